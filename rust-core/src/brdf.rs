@@ -1,0 +1,296 @@
+//! The BRDF of water at one point: facets about a wave normal (Eqs. 56-61, 68-71), whitecaps, and their mixture.
+//!
+//! Directions are unit vectors away from the surface: `i` to the source, `o` to the observer,
+//! `n` the wave normal, in coordinates with z up. A direction below the horizon of `n` gives 0.
+
+use crate::optics::Reflectance;
+use crate::real::{Vec3, dot};
+use crate::shadowing::hidden;
+use crate::slopes::gram_charlier;
+use crate::{Real, SlopeMeasure};
+
+/// The normal of a flat sea.
+pub fn up<T: Real>() -> Vec3<T> {
+    [T::of(0.0), T::of(0.0), T::of(1.0)]
+}
+
+/// Coefficients of the facets' lobe, f_SW of Eq. 56: what evaluation needs and nothing else.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct Facets<T> {
+    /// Cosine of phi_W, the azimuth the wind comes from (Eq. 68).
+    pub cos_wind: T,
+    /// Sine of phi_W.
+    pub sin_wind: T,
+    /// Standard deviation of the facets' slope along the wind (Eq. 74).
+    pub sigma_u: T,
+    /// And across it (Eq. 75).
+    pub sigma_c: T,
+    /// `1/(2 pi sigma_u sigma_c)` times the 1/4 (or, as printed, pi/4) of Eq. 56.
+    pub scale: T,
+    /// Skewness c21 of Eq. 78.
+    pub c21: T,
+    /// Skewness c03 of Eq. 78.
+    pub c03: T,
+    /// sigma of Eq. 64.
+    pub sigma_shadow: T,
+    /// Standard deviations of the proposal that [`crate::sampling`] draws tilts from.
+    pub proposal_u: T,
+    /// And across the wind.
+    pub proposal_c: T,
+    /// rho of Eqs. 62-63.
+    pub reflectance: Reflectance<T>,
+    /// The density is Gaussian in slopes, not in tilt angles.
+    pub slope_measure: bool,
+    /// Eq. 78 is applied.
+    pub gram_charlier: bool,
+    /// Eq. 67 is applied.
+    pub shadowing: bool,
+    /// `rho G` is held to what the facets themselves leave visible ([`Facets::visible_bound`]).
+    pub bounded: bool,
+    /// Unsigned angles (71-73) and the c21 term (78) as printed.
+    pub as_printed: bool,
+}
+
+/// What the two directions and the normal fix, however the water is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Geometry<T> {
+    /// cos theta_i, cos theta_r (Eq. 60).
+    pub cos: [T; 2],
+    /// cos zeta (Eq. 61).
+    pub cos_zeta: T,
+    /// cos xi (Eq. 71).
+    pub cos_xi: T,
+    /// Sine-like and cosine-like parts of the signed tilt xi_u from normal to half vector (Eqs. 69-71).
+    pub tilt_u: [T; 2],
+    /// And of xi_c.
+    pub tilt_c: [T; 2],
+    /// The half vector H (Eq. 59).
+    pub half: Vec3<T>,
+}
+
+impl<T: Real> Facets<T> {
+    #[inline(always)]
+    pub(crate) fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> Geometry<T> {
+        let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
+        let length = T::max(dot(h, h).sqrt(), T::TINY);
+        let half = h.map(|x| x / length);
+        // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
+        let x = T::difference_of_products(i[0], o[0], n[2], i[2], o[2], n[0]);
+        let y = T::difference_of_products(i[1], o[1], n[2], i[2], o[2], n[1]);
+        let zz = h[2] * n[2];
+        let [hu, hc] = self.wind_frame(h[0], h[1]);
+        let [nu, nc] = self.wind_frame(n[0], n[1]);
+        let [xu, xc] = self.wind_frame(x, y);
+        Geometry {
+            cos: [dot(i, n), dot(o, n)],
+            cos_zeta: T::min(T::of(0.5) * length, T::of(1.0)),
+            cos_xi: dot(half, n),
+            tilt_u: [xu, zz + hu * nu],
+            tilt_c: [xc, zz + hc * nc],
+            half,
+        }
+    }
+
+    /// Components along W_u and W_c (Eq. 68) of a horizontal vector.
+    #[inline(always)]
+    pub(crate) fn wind_frame(&self, x: T, y: T) -> [T; 2] {
+        [x * self.cos_wind + y * self.sin_wind, y * self.cos_wind - x * self.sin_wind]
+    }
+
+    /// A tilt in the density's measure: the angle, or its tangent; far out where there is none.
+    #[inline(always)]
+    pub(crate) fn measure(&self, [sine, cosine]: [T; 2]) -> T {
+        if self.slope_measure {
+            let far = T::of(1e6);
+            T::select(T::lt(T::of(0.0), cosine), sine / T::max(cosine, T::TINY), far)
+        } else {
+            sine.atan2(cosine)
+        }
+    }
+
+    /// f_SW (Eq. 56), 1/sr.
+    #[inline(always)]
+    pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+        let g = self.geometry(i, o, n);
+        let zero = T::of(0.0);
+        let lit = T::lt(zero, g.cos[0]) & T::lt(zero, g.cos[1]);
+        let value = self.density(&g) * self.visible_reflectance(&g, i, o, n);
+        T::select(lit, T::min(value, T::MAX), zero)
+    }
+
+    /// `p/cos^4 xi` (Eqs. 72-73, 78-79) with the constants of Eq. 56.
+    #[inline(always)]
+    fn density(&self, g: &Geometry<T>) -> T {
+        let (zero, one, far) = (T::of(0.0), T::of(1.0), T::of(1e3));
+        // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
+        let clamp = |x: T| T::max(T::min(x, far), -far);
+        let mut u = clamp(-self.measure(g.tilt_u) / self.sigma_u);
+        let mut c = clamp(self.measure(g.tilt_c) / self.sigma_c);
+        if self.as_printed {
+            (u, c) = (u.abs(), c.abs());
+        }
+        let cos2 = g.cos_xi * g.cos_xi;
+        let mut p = T::exp(T::of(-0.5) * (u * u + c * c)) / T::max(cos2 * cos2, T::TINY);
+        if !self.slope_measure && !self.as_printed {
+            // In tilt angles the density stays finite where facets stand upright and 1/cos^4 does not:
+            // no facet counts for more than a level one.
+            p = T::min(p, one);
+        }
+        if self.gram_charlier {
+            p = p * T::max(gram_charlier(self.c21, self.c03, u, c, self.as_printed), zero);
+        }
+        p * self.scale
+    }
+
+    /// `rho G/(cos theta_i cos theta_r)` (Eqs. 61-67).
+    #[inline(always)]
+    fn visible_reflectance(&self, g: &Geometry<T>, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+        let [ci, cr] = g.cos;
+        let rho = self.reflectance.eval(g.cos_zeta);
+        let one = T::of(1.0);
+        let mut area = ci * cr;
+        if self.shadowing {
+            let sine = |c: T| T::max(one - c * c, T::of(0.0)).sqrt();
+            area = area + cr * hidden(ci, self.sigma_shadow * sine(ci)) + ci * hidden(cr, self.sigma_shadow * sine(cr));
+        }
+        let value = rho / T::max(area, T::TINY);
+        if self.bounded { T::min(value, self.visible_bound(g.cos, i, o, n)) } else { value }
+    }
+
+    /// `1/((1 + Lambda) cos_i cos_r)`, Lambda the larger of the two directions' by the facets' own
+    /// slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
+    /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1.
+    #[inline(always)]
+    fn visible_bound(&self, [ci, cr]: [T; 2], i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+        let visible = |c: T, v: Vec3<T>| c + hidden(c, T::of(std::f64::consts::SQRT_2) * self.spread(v, n, self.sigma_u, self.sigma_c));
+        T::of(1.0) / T::max(T::max(visible(ci, i) * cr, visible(cr, o) * ci), T::TINY)
+    }
+
+    /// Length of the horizontal part of `v` seen from `n`, stretched by standard deviations along and across the wind.
+    #[inline(always)]
+    pub(crate) fn spread(&self, v: Vec3<T>, n: Vec3<T>, sigma_u: T, sigma_c: T) -> T {
+        let [u, c] = self.stretched(v, n, sigma_u, sigma_c);
+        (u * u + c * c).sqrt()
+    }
+
+    /// The vector behind [`Facets::spread`].
+    #[inline(always)]
+    pub(crate) fn stretched(&self, v: Vec3<T>, n: Vec3<T>, sigma_u: T, sigma_c: T) -> [T; 2] {
+        let [u, c] = self.wind_frame(v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]);
+        [u * sigma_u, c * sigma_c]
+    }
+}
+
+/// Which of the two lobes take part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Parts {
+    /// The smooth water's facets.
+    pub facets: bool,
+    /// The whitecaps.
+    pub whitecaps: bool,
+}
+
+impl Parts {
+    /// The whole BRDF.
+    pub const ALL: Self = Self { facets: true, whitecaps: true };
+}
+
+/// The BRDF of a point of the sea: `(1 - F_WC) f_SW + F_WC f_WC`, finite and non-negative.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct Lobe<T> {
+    /// The facets of smooth water.
+    pub facets: Facets<T>,
+    /// F_WC, fraction of the water under whitecaps (Eq. 51); 0 where they are switched off.
+    pub whitecap_fraction: T,
+    /// f_WC, BRDF of a whitecap (Eq. 55), 1/sr.
+    pub whitecap_brdf: T,
+}
+
+impl<T: Real> Lobe<T> {
+    /// f, 1/sr.
+    #[inline(always)]
+    pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+        self.eval_parts(i, o, n, Parts::ALL)
+    }
+
+    /// f of some of its parts, each with its share of the surface, 1/sr.
+    #[inline(always)]
+    pub fn eval_parts(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>, parts: Parts) -> T {
+        let zero = T::of(0.0);
+        let mut f = zero;
+        if parts.facets {
+            f = (T::of(1.0) - self.whitecap_fraction) * self.facets.eval(i, o, n);
+        }
+        if parts.whitecaps {
+            let lit = T::lt(zero, dot(i, n)) & T::lt(zero, dot(o, n));
+            f = f + T::select(lit, self.whitecap_fraction * self.whitecap_brdf, zero);
+        }
+        f
+    }
+}
+
+impl Lobe<f64> {
+    /// The same coefficients, rounded to another number type.
+    pub fn cast<T: Real>(&self) -> Lobe<T> {
+        let f = &self.facets;
+        Lobe {
+            facets: Facets {
+                cos_wind: T::of(f.cos_wind),
+                sin_wind: T::of(f.sin_wind),
+                sigma_u: T::of(f.sigma_u),
+                sigma_c: T::of(f.sigma_c),
+                scale: T::of(f.scale),
+                c21: T::of(f.c21),
+                c03: T::of(f.c03),
+                sigma_shadow: T::of(f.sigma_shadow),
+                proposal_u: T::of(f.proposal_u),
+                proposal_c: T::of(f.proposal_c),
+                reflectance: Reflectance {
+                    normal: T::of(f.reflectance.normal),
+                    ior2: T::of(f.reflectance.ior2),
+                    exact: f.reflectance.exact,
+                },
+                slope_measure: f.slope_measure,
+                gram_charlier: f.gram_charlier,
+                shadowing: f.shadowing,
+                bounded: f.bounded,
+                as_printed: f.as_printed,
+            },
+            whitecap_fraction: T::of(self.whitecap_fraction),
+            whitecap_brdf: T::of(self.whitecap_brdf),
+        }
+    }
+}
+
+impl Facets<f64> {
+    /// Whether `rho G (1 + Lambda)` can pass 1 anywhere: if not, the bound costs nothing.
+    /// Scanned over both elevations, with the largest reflectance (forward) and the rougher azimuth.
+    pub(crate) fn needs_bound(&self) -> bool {
+        const STEPS: i32 = 64;
+        let spread = std::f64::consts::SQRT_2 * self.sigma_u.max(self.sigma_c);
+        // Elevations from 90 degrees down to 1e-4, evenly in their logarithm.
+        let elevation = |k: i32| (90.0 * 10f64.powf(-6.0 * f64::from(k) / f64::from(STEPS))).to_radians();
+        let f = |e: f64, s: f64| hidden(e.sin(), s * e.cos()) / e.sin();
+        (0..=STEPS).any(|a| {
+            (0..=a).any(|b| {
+                let (low, high) = (elevation(a), elevation(b));
+                let rho = self.reflectance.eval((0.5 * (low + high)).sin());
+                let g = 1.0 / (1.0 + f(low, self.sigma_shadow) + f(high, self.sigma_shadow));
+                rho * g * (1.0 + f(low, spread)) > 0.999
+            })
+        })
+    }
+}
+
+impl SlopeMeasure {
+    /// Standard deviation of the proposal for tilts of standard deviation `sigma`: in tilt angles
+    /// the surface integral gains 1/cos^2, which to lowest order widens the Gaussian.
+    pub(crate) fn widened(self, sigma: f64) -> f64 {
+        match self {
+            SlopeMeasure::Slope => sigma,
+            SlopeMeasure::Angle => sigma / (1.0 - 2.0 * sigma * sigma).sqrt(),
+        }
+    }
+}

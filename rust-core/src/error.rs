@@ -1,0 +1,68 @@
+/// Why a configuration or a batch of rows was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A value outside what the parameter allows.
+    #[error("{parameter} = {value} is out of range: allowed is {allowed}")]
+    OutOfRange {
+        /// The parameter's name in the vocabulary.
+        parameter: &'static str,
+        /// The value as given.
+        value: String,
+        /// The range or the list of choices, with units.
+        allowed: String,
+    },
+    /// A value of the wrong kind (a word where a number belongs, say).
+    #[error("{parameter} = {value} is not {expected}")]
+    WrongType {
+        /// The parameter's name in the vocabulary.
+        parameter: &'static str,
+        /// The value as given.
+        value: String,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A name that is not in the vocabulary.
+    #[error("unknown parameter {name}: known are {known}")]
+    UnknownParameter {
+        /// The name as given.
+        name: String,
+        /// Every name there is.
+        known: String,
+    },
+    /// Parameters that exclude each other, both given.
+    #[error("{first} and {second} are both given: allowed is one of {allowed}")]
+    Conflict {
+        /// The one given first.
+        first: &'static str,
+        /// The one given second.
+        second: &'static str,
+        /// The group they belong to.
+        allowed: &'static str,
+    },
+    /// A direction of a batch that is not a unit vector.
+    #[error("row {row}: {column} = ({x}, {y}, {z}) is not {expected}")]
+    Row {
+        /// Number of the row, from 1, the header not counted.
+        row: usize,
+        /// Which of the row's directions.
+        column: &'static str,
+        /// Its x component.
+        x: f64,
+        /// Its y component.
+        y: f64,
+        /// Its z component.
+        z: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// Arrays of a batch whose lengths do not belong together.
+    #[error("{what} holds {found} rows, expected {expected}")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Its length in rows.
+        found: usize,
+        /// The length it should have.
+        expected: usize,
+    },
+}

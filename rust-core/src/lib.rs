@@ -1,0 +1,56 @@
+//! The probabilistic water BRDF of AFRL-RH-FS-TR-2023-0002 ("the report").
+//!
+//! Two stages, always: [`Parameters`] are checked and turned into a [`Water`] once
+//! ([`Parameters::configure`], where every error lives); a `Water` is then evaluated
+//! billions of times and cannot fail.
+//!
+//! ```
+//! use prob_water::{Parameters, Wind};
+//!
+//! let water = Parameters { wind: Wind::FrictionVelocity(8.0), ..Parameters::default() }
+//!     .configure()
+//!     .unwrap();
+//! let up = [0.0, 0.0, 1.0];
+//! let f = water.lobe.eval(up, up, up); // 1/sr
+//! // Flat sea seen from above: rho_n/(8 pi sigma_u sigma_c) p_ks(0).
+//! assert!((f - 0.1308).abs() < 1e-4, "{f}");
+//! ```
+//!
+//! One module per part of the report, each depending only on those above it:
+//!
+//! | module | equations |
+//! | --- | --- |
+//! | [`wind`] | 1-2, Table 1 |
+//! | [`whitecap`] | 51, 53-55 |
+//! | [`optics`] | 62-63, refractive index |
+//! | [`slopes`] | 72-79 |
+//! | [`shadowing`] | 64-67 |
+//! | [`brdf`] | 56-61, 68-71, and the mixture with whitecaps |
+//! | [`sampling`] | importance sampling of the two lobes |
+//!
+//! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
+//! which test shows it.
+
+pub mod batch;
+pub mod brdf;
+#[cfg(feature = "c-api")]
+mod c_api;
+mod error;
+pub mod optics;
+mod parameters;
+pub mod real;
+pub mod sampling;
+pub mod shadowing;
+pub mod slopes;
+pub mod vocabulary;
+pub mod whitecap;
+pub mod wind;
+
+pub use brdf::Lobe;
+pub use error::Error;
+pub use optics::Fresnel;
+pub use parameters::{Body, Parameters, Readings, Surface, Water};
+pub use real::Real;
+pub use sampling::Sample;
+pub use slopes::SlopeMeasure;
+pub use wind::{Wind, WindProfile};

@@ -1,0 +1,169 @@
+use crate::brdf::{Facets, Lobe};
+use crate::optics::{self, Fresnel, Reflectance};
+use crate::sampling::TAIL_STRETCH;
+use crate::wind::{Wind, WindProfile};
+use crate::{Error, SlopeMeasure, shadowing, slopes, whitecap};
+
+/// Salt or no salt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Body {
+    /// Sea water, chlorinity 19 g/kg.
+    #[default]
+    Ocean,
+    /// Fresh water.
+    Fresh,
+}
+
+/// How the report's defective equations are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Readings {
+    /// With the corrections of docs/model.md.
+    #[default]
+    Corrected,
+    /// pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand.
+    AsPrinted,
+}
+
+/// Which surface the facets lie on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Surface {
+    /// The normal that the geometry gives.
+    #[default]
+    Flat,
+}
+
+/// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// The wind.
+    pub wind: Wind,
+    /// Azimuth the wind comes from, degrees counter-clockwise from +x.
+    pub wind_direction: f64,
+    /// The report's D, m: waves shorter than 2 D are facets. Infinite: all waves are.
+    pub footprint: f64,
+    /// Where the facets lie.
+    pub surface: Surface,
+    /// Micrometres.
+    pub wavelength: f64,
+    /// Refractive index; else that of `water` at `wavelength`.
+    pub ior: Option<f64>,
+    /// Salt or fresh.
+    pub water: Body,
+    /// Reflectance of a facet.
+    pub fresnel: Fresnel,
+    /// Measure of the slope density.
+    pub slope_measure: SlopeMeasure,
+    /// Reading of the defective equations.
+    pub readings: Readings,
+    /// Whitecaps blended in.
+    pub whitecaps: bool,
+    /// Shadowing function applied.
+    pub shadowing: bool,
+    /// Skewness and kurtosis applied.
+    pub gram_charlier: bool,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self {
+            wind: Wind::Speed { speed: 5.0, height: 10.0 },
+            wind_direction: 0.0,
+            footprint: f64::INFINITY,
+            surface: Surface::Flat,
+            wavelength: 0.55,
+            ior: None,
+            water: Body::Ocean,
+            fresnel: Fresnel::Schlick,
+            slope_measure: SlopeMeasure::Angle,
+            readings: Readings::Corrected,
+            whitecaps: true,
+            shadowing: true,
+            gram_charlier: true,
+        }
+    }
+}
+
+/// A configured sea: checked parameters, what follows from them once, and the coefficients to evaluate.
+#[derive(Debug, Clone, Copy)]
+pub struct Water {
+    /// What it was made from.
+    pub parameters: Parameters,
+    /// The wind at every height the model needs.
+    pub wind: WindProfile,
+    /// Refractive index in use.
+    pub ior: f64,
+    /// Slope variances of the facets, upwind and crosswind (Eqs. 74-77).
+    pub variances: [f64; 2],
+    /// F_WC (Eq. 51), whether or not whitecaps are blended in.
+    pub whitecap_fraction: f64,
+    /// The BRDF.
+    pub lobe: Lobe<f64>,
+}
+
+fn require(parameter: &'static str, value: f64, holds: bool, allowed: &str) -> Result<(), Error> {
+    if holds {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: allowed.into() })
+}
+
+impl Parameters {
+    /// Checks everything and computes what depends on the parameters alone.
+    pub fn configure(&self) -> Result<Water, Error> {
+        let wind = self.wind.profile()?;
+        require("wind_direction", self.wind_direction, self.wind_direction.is_finite(), "any finite angle, degrees")?;
+        require("footprint", self.footprint, self.footprint > 0.0, "above 0 m, up to inf")?;
+        let [first, last] = optics::WAVELENGTHS;
+        require("wavelength", self.wavelength, (first..=last).contains(&self.wavelength), "0.2 to 200 micrometres")?;
+        if let Some(ior) = self.ior {
+            require("ior", ior, (1.0..=10.0).contains(&ior), "1 to 10")?;
+        }
+        let ior = self.ior.unwrap_or_else(|| {
+            let salt = if self.water == Body::Ocean { optics::SEA_SALT } else { 0.0 };
+            optics::pure_water(self.wavelength) + salt
+        });
+        let variances = slopes::variances(&wind, self.footprint);
+        let whitecap_fraction = whitecap::fraction(wind.w10);
+        Ok(Water {
+            parameters: *self,
+            wind,
+            ior,
+            variances,
+            whitecap_fraction,
+            lobe: Lobe {
+                facets: self.facets(&wind, ior, variances),
+                whitecap_fraction: if self.whitecaps { whitecap_fraction } else { 0.0 },
+                whitecap_brdf: whitecap::brdf(self.wavelength),
+            },
+        })
+    }
+
+    fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
+        let [sigma_u, sigma_c] = variances.map(f64::sqrt);
+        let [c21, c03] = slopes::skewness(wind);
+        let (sin_wind, cos_wind) = self.wind_direction.to_radians().sin_cos();
+        let as_printed = self.readings == Readings::AsPrinted;
+        let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
+        let stretch = if self.gram_charlier { TAIL_STRETCH } else { 1.0 };
+        let mut facets = Facets {
+            cos_wind,
+            sin_wind,
+            sigma_u,
+            sigma_c,
+            scale: eq_56 / (std::f64::consts::TAU * sigma_u * sigma_c),
+            c21,
+            c03,
+            sigma_shadow: shadowing::sigma(wind.w10),
+            proposal_u: stretch * self.slope_measure.widened(sigma_u),
+            proposal_c: stretch * self.slope_measure.widened(sigma_c),
+            reflectance: Reflectance::new(ior, self.fresnel),
+            slope_measure: self.slope_measure == SlopeMeasure::Slope,
+            gram_charlier: self.gram_charlier,
+            shadowing: self.shadowing,
+            bounded: false,
+            as_printed,
+        };
+        facets.bounded = self.shadowing && !as_printed && facets.needs_bound();
+        facets
+    }
+}
