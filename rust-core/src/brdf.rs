@@ -7,7 +7,7 @@ use crate::optics::Reflectance;
 use crate::real::{Vec3, dot};
 use crate::shadowing::hidden;
 use crate::slopes::gram_charlier;
-use crate::{Real, SlopeMeasure};
+use crate::Real;
 
 /// The normal of a flat sea.
 pub fn up<T: Real>() -> Vec3<T> {
@@ -32,8 +32,14 @@ pub struct Facets<T> {
     pub c21: T,
     /// Skewness c03 of Eq. 78.
     pub c03: T,
+    /// Cosine of the tilt beyond which `exp(-xi^2/2 sigma^2)/cos^4 xi` would rise again ([`steep_facets`]).
+    pub steep_cos: T,
+    /// The most it may be there.
+    pub steep_bound: T,
     /// sigma of Eq. 64.
     pub sigma_shadow: T,
+    /// What `rho G (1 + Lambda)` is held to ([`Facets::visible_bound`]).
+    pub bound: T,
     /// Standard deviations of the proposal that [`crate::sampling`] draws tilts from.
     pub proposal_u: T,
     /// And across the wind.
@@ -122,25 +128,27 @@ impl<T: Real> Facets<T> {
     /// `p/cos^4 xi` (Eqs. 72-73, 78-79) with the constants of Eq. 56.
     #[inline(always)]
     fn density(&self, g: &Geometry<T>) -> T {
-        let (zero, one, far) = (T::of(0.0), T::of(1.0), T::of(1e3));
         // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
+        let far = T::of(1e3);
         let clamp = |x: T| T::max(T::min(x, far), -far);
-        let mut u = clamp(-self.measure(g.tilt_u) / self.sigma_u);
-        let mut c = clamp(self.measure(g.tilt_c) / self.sigma_c);
-        if self.as_printed {
-            (u, c) = (u.abs(), c.abs());
-        }
-        let cos2 = g.cos_xi * g.cos_xi;
+        let u = clamp(-self.measure(g.tilt_u) / self.sigma_u);
+        let c = clamp(self.measure(g.tilt_c) / self.sigma_c);
+        self.scale * self.tilt_density(u, c, g.cos_xi)
+    }
+
+    /// The same over its constants, for tilts U and C in standard deviations.
+    #[inline(always)]
+    pub(crate) fn tilt_density(&self, u: T, c: T, cos_xi: T) -> T {
+        let (u, c) = if self.as_printed { (u.abs(), c.abs()) } else { (u, c) };
+        let cos2 = cos_xi * cos_xi;
         let mut p = T::exp(T::of(-0.5) * (u * u + c * c)) / T::max(cos2 * cos2, T::TINY);
         if !self.slope_measure && !self.as_printed {
-            // In tilt angles the density stays finite where facets stand upright and 1/cos^4 does not:
-            // no facet counts for more than a level one.
-            p = T::min(p, one);
+            p = T::select(T::lt(cos_xi, self.steep_cos), T::min(p, self.steep_bound), p);
         }
         if self.gram_charlier {
-            p = p * T::max(gram_charlier(self.c21, self.c03, u, c, self.as_printed), zero);
+            p = p * T::max(gram_charlier(self.c21, self.c03, u, c, self.as_printed), T::of(0.0));
         }
-        p * self.scale
+        p
     }
 
     /// `rho G/(cos theta_i cos theta_r)` (Eqs. 61-67).
@@ -158,13 +166,13 @@ impl<T: Real> Facets<T> {
         if self.bounded { T::min(value, self.visible_bound(g.cos, i, o, n)) } else { value }
     }
 
-    /// `1/((1 + Lambda) cos_i cos_r)`, Lambda the larger of the two directions' by the facets' own
+    /// `bound/((1 + Lambda) cos_i cos_r)`, Lambda the larger of the two directions' by the facets' own
     /// slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
     /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1.
     #[inline(always)]
     fn visible_bound(&self, [ci, cr]: [T; 2], i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
         let visible = |c: T, v: Vec3<T>| c + hidden(c, T::of(std::f64::consts::SQRT_2) * self.spread(v, n, self.sigma_u, self.sigma_c));
-        T::of(1.0) / T::max(T::max(visible(ci, i) * cr, visible(cr, o) * ci), T::TINY)
+        self.bound / T::max(T::max(visible(ci, i) * cr, visible(cr, o) * ci), T::TINY)
     }
 
     /// Length of the horizontal part of `v` seen from `n`, stretched by standard deviations along and across the wind.
@@ -244,7 +252,10 @@ impl Lobe<f64> {
                 scale: T::of(f.scale),
                 c21: T::of(f.c21),
                 c03: T::of(f.c03),
+                steep_cos: T::of(f.steep_cos),
+                steep_bound: T::of(f.steep_bound),
                 sigma_shadow: T::of(f.sigma_shadow),
+                bound: T::of(f.bound),
                 proposal_u: T::of(f.proposal_u),
                 proposal_c: T::of(f.proposal_c),
                 reflectance: Reflectance {
@@ -264,9 +275,13 @@ impl Lobe<f64> {
     }
 }
 
+/// `rho G (1 + Lambda)` up to which the bound is left out: Eq. 64 and Eqs. 76-77 differ by up to
+/// 1.105 even in a gale, where the albedo is far from 1.
+const BOUND_SLACK: f64 = 1.11;
+
 impl Facets<f64> {
-    /// Whether `rho G (1 + Lambda)` can pass 1 anywhere: if not, the bound costs nothing.
-    /// Scanned over both elevations, with the largest reflectance (forward) and the rougher azimuth.
+    /// Whether [`Facets::visible_bound`] matters: scanned over both elevations, with the largest
+    /// reflectance (forward) and the rougher azimuth. Above w* = 9 cm/s it does not, and costs nothing.
     pub(crate) fn needs_bound(&self) -> bool {
         const STEPS: i32 = 64;
         let spread = std::f64::consts::SQRT_2 * self.sigma_u.max(self.sigma_c);
@@ -278,19 +293,23 @@ impl Facets<f64> {
                 let (low, high) = (elevation(a), elevation(b));
                 let rho = self.reflectance.eval((0.5 * (low + high)).sin());
                 let g = 1.0 / (1.0 + f(low, self.sigma_shadow) + f(high, self.sigma_shadow));
-                rho * g * (1.0 + f(low, spread)) > 0.999
+                rho * g * (1.0 + f(low, spread)) > BOUND_SLACK
             })
         })
     }
 }
 
-impl SlopeMeasure {
-    /// Standard deviation of the proposal for tilts of standard deviation `sigma`: in tilt angles
-    /// the surface integral gains 1/cos^2, which to lowest order widens the Gaussian.
-    pub(crate) fn widened(self, sigma: f64) -> f64 {
-        match self {
-            SlopeMeasure::Slope => sigma,
-            SlopeMeasure::Angle => sigma / (1.0 - 2.0 * sigma * sigma).sqrt(),
-        }
+/// Where `exp(-xi^2/2 sigma^2)/cos^4 xi` starts to rise again (`xi/sigma^2 = 4 tan xi`), as a
+/// cosine, and the most it may be beyond: its value there, or 0.01 where that is less. A Gaussian
+/// of tilt angles is finite where facets stand upright and 1/cos^4 is not; unbounded, the albedo
+/// would pass 1 in a hurricane at grazing angles. Slopes need no such bound.
+pub(crate) fn steep_facets(sigma: f64) -> [f64; 2] {
+    let rises = |xi: f64| 4.0 * xi.tan() * sigma * sigma > xi;
+    let (mut low, mut high) = (0.1, std::f64::consts::FRAC_PI_2);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if rises(middle) { high = middle } else { low = middle }
     }
+    let cos = high.cos();
+    [cos, ((-0.5 * (high / sigma).powi(2)).exp() / cos.powi(4)).max(0.01)]
 }

@@ -1,6 +1,5 @@
-use crate::brdf::{Facets, Lobe};
+use crate::brdf::{Facets, Lobe, steep_facets};
 use crate::optics::{self, Fresnel, Reflectance};
-use crate::sampling::TAIL_STRETCH;
 use crate::wind::{Wind, WindProfile};
 use crate::{Error, SlopeMeasure, shadowing, slopes, whitecap};
 
@@ -144,7 +143,8 @@ impl Parameters {
         let (sin_wind, cos_wind) = self.wind_direction.to_radians().sin_cos();
         let as_printed = self.readings == Readings::AsPrinted;
         let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
-        let stretch = if self.gram_charlier { TAIL_STRETCH } else { 1.0 };
+        let [steep_cos, steep_bound] = steep_facets(sigma_u.max(sigma_c));
+        let slope_measure = self.slope_measure == SlopeMeasure::Slope;
         let mut facets = Facets {
             cos_wind,
             sin_wind,
@@ -153,16 +153,24 @@ impl Parameters {
             scale: eq_56 / (std::f64::consts::TAU * sigma_u * sigma_c),
             c21,
             c03,
+            steep_cos,
+            steep_bound,
             sigma_shadow: shadowing::sigma(wind.w10),
-            proposal_u: stretch * self.slope_measure.widened(sigma_u),
-            proposal_c: stretch * self.slope_measure.widened(sigma_c),
+            // In tilt angles facets show up to (8 sigma_i^2 + 3 sigma_j^2)/3 more area than their slopes' Lambda.
+            // A percent is left to quadratures and rounding, so that "at most 1" can be checked.
+            bound: 0.99 / if slope_measure { 1.0 } else { 1.0 + 3.0 * (variances[0] + variances[1]) },
+            proposal_u: sigma_u,
+            proposal_c: sigma_c,
             reflectance: Reflectance::new(ior, self.fresnel),
-            slope_measure: self.slope_measure == SlopeMeasure::Slope,
+            slope_measure,
             gram_charlier: self.gram_charlier,
             shadowing: self.shadowing,
             bounded: false,
             as_printed,
         };
+        let stretch = facets.proposal_stretch();
+        facets.proposal_u *= stretch;
+        facets.proposal_c *= stretch;
         facets.bounded = self.shadowing && !as_printed && facets.needs_bound();
         facets
     }

@@ -20,8 +20,6 @@ const WHITECAP_ALBEDO: f64 = 0.22;
 const FACET_ALBEDO_FLOOR: f64 = 0.01;
 /// Smallest cosine to the source the proposal distinguishes.
 const GRAZING: f64 = 1e-12;
-/// Proposal's standard deviations where the density has Gram-Charlier tails.
-pub(crate) const TAIL_STRETCH: f64 = 1.15;
 
 /// A drawn direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -155,6 +153,31 @@ impl<T: Real> Facets<T> {
         let pdf = gauss * shape / ((one + p.tail) * T::max(T::of(4.0) * g.cos_zeta * jacobian, T::TINY));
         let valid = T::lt(zero, g.cos[0]) & T::lt(zero, g.cos[1]) & T::lt(zero, jacobian) & T::lt(zero, g.tilt_u[1]) & T::lt(zero, g.tilt_c[1]);
         T::select(valid, T::min(pdf, T::MAX), zero)
+    }
+}
+
+impl Facets<f64> {
+    /// Factor on the facets' standard deviations that keeps the sample weights least at their worst:
+    /// 1 for a Gaussian of slopes, more where Gram-Charlier tails or steep tilt angles reach further out.
+    pub(crate) fn proposal_stretch(&self) -> f64 {
+        const STEPS: i32 = 48;
+        let mut wanted = Vec::new();
+        for a in -STEPS..=STEPS {
+            for b in 0..=STEPS {
+                let [u, c] = [a, b].map(|k| 6.0 * f64::from(k) / f64::from(STEPS));
+                let [t, w] = [u * self.sigma_u, c * self.sigma_c].map(|x| self.tangent(x));
+                let slope2 = t * t + w * w;
+                if !self.slope_measure && (u * self.sigma_u).abs().max(c * self.sigma_c) > 1.57 {
+                    continue;
+                }
+                let density = self.tilt_density(-u, c, 1.0 / (1.0 + slope2).sqrt()) / (1.0 + slope2).powi(2);
+                let measure = if self.slope_measure { 1.0 } else { (1.0 + t * t) * (1.0 + w * w) };
+                wanted.push(((density * measure).ln(), 0.5 * (u * u + c * c)));
+            }
+        }
+        let worst = |s: f64| wanted.iter().map(|(ln, half)| ln + half / (s * s)).fold(f64::MIN, f64::max) + 2.0 * s.ln();
+        let ladder = (0..=100).map(|k| 1.0 + 0.02 * f64::from(k));
+        ladder.min_by(|a, b| worst(*a).total_cmp(&worst(*b))).unwrap_or(1.0)
     }
 }
 

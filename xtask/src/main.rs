@@ -1,1 +1,64 @@
-fn main(){}
+//! The project's own commands, run as `cargo xtask <command>`. Each does what it needs first, so that on a fresh
+//! machine with Rust, Python 3 and g++ a single one is enough.
+
+mod bench;
+mod build;
+mod c_api;
+mod cargo;
+mod render;
+mod setup;
+mod test;
+mod util;
+
+use anyhow::{Result, bail};
+use std::process::ExitCode;
+
+const HELP: &str = "\
+The commands of prob-water, each run as `cargo xtask <command>`:
+
+  setup             create .venv and install validation/requirements.txt in it
+  build [--out DIR] build the Mitsuba plugin into DIR/plugins (default: target/mitsuba)
+  render [--quality preview|final] [--variant V]
+                    build, then render the review images into out/
+  test              run every check: Rust, C, plugin, Python, style
+  header [--check]  write rust-core/include/prob_water.h, or only check that it is current
+  c-test            compile and run the C programs of rust-core/tests/c
+  bench [OPTIONS]   build, set up the peers and print the throughput table (options of validation/bench.py)
+  peer              create .venv-peer and install validation/requirements-peer.txt in it
+  help              print this
+
+The environment variables PYTHON (used when an environment is created), CXX and CC replace python3, g++ and cc.";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match dispatch(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatch(arguments: &[String]) -> Result<()> {
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if words.iter().any(|word| ["-h", "--help"].contains(word)) {
+        println!("{HELP}");
+        return Ok(());
+    }
+    match words[..] {
+        [] | ["help"] => println!("{HELP}"),
+        ["setup"] => setup::setup()?,
+        ["peer"] => setup::peer()?,
+        ["build"] => build::build(&build::default_out())?,
+        ["build", "--out", directory] => build::build(&std::path::absolute(directory)?)?,
+        ["render", ..] => render::render(&arguments[1..])?,
+        ["bench", ..] => bench::bench(&arguments[1..])?,
+        ["test"] => test::test()?,
+        ["header"] => c_api::header(false)?,
+        ["header", "--check"] => c_api::header(true)?,
+        ["c-test"] => c_api::c_test()?,
+        _ => bail!("`{}` is not understood; `cargo xtask help` lists the commands", words.join(" ")),
+    }
+    Ok(())
+}

@@ -1,0 +1,72 @@
+use crate::{close, float, succeed, table, vectors};
+use serde_json::Value;
+
+#[test]
+fn reproduces_the_reference_vectors() {
+    let expected = vectors("facet.csv");
+    let expected = table(&expected);
+    let (mut seen, mut tilted, mut lit) = (0, 0, 0);
+    for row in expected[1..].iter().step_by(25) {
+        let azimuth = float(row[1]).to_degrees();
+        let parameters = format!(
+            "--friction-velocity {} --wind-direction {azimuth} --footprint {} --ior {} --whitecaps false",
+            row[0], row[2], row[3]
+        );
+        // A flat row goes in without normals, which then are up.
+        let columns = if row[12] == "1" { 4..10 } else { 4..13 };
+        let input = format!("{}\n{}\n", expected[0][columns.clone()].join(","), row[columns].join(","));
+        let text = succeed(&format!("brdf {parameters}"), &input);
+        let found = table(&text)[1].last().copied().unwrap();
+        close(found, row[13]);
+        seen += 1;
+        tilted += usize::from(row[12] != "1");
+        lit += usize::from(float(found) > 0.0);
+    }
+    println!("{seen} rows, {tilted} of them tilted, {lit} of them lit");
+    assert!(seen >= 12 && tilted > 3 && tilted < seen && lit > 6);
+}
+
+#[test]
+fn input_stays_as_it_was_in_any_order() {
+    let input = "oz,ox,oy,iz,ix,iy\r\n1.0,0,-0.0,8e-1,+0.60,0\n\n1,0,0, 1 ,0,0";
+    let text = succeed("brdf", input);
+    let rows = table(&text);
+    assert_eq!(rows[0].join(","), "oz,ox,oy,iz,ix,iy,f");
+    assert_eq!(rows[1][..6].join(","), "1.0,0,-0.0,8e-1,+0.60,0");
+    assert_eq!(rows[2][..6].join(","), "1,0,0, 1 ,0,0");
+    let sorted = succeed("brdf -", "ix,iy,iz,ox,oy,oz\n.6,0,.8,0,0,1\n0,0,1,0,0,1\n");
+    for row in [1, 2] {
+        assert!(float(rows[row][6]) > 0.0);
+        assert_eq!(rows[row][6], table(&sorted)[row][6]);
+    }
+}
+
+#[test]
+fn below_the_horizon_is_black() {
+    let text = succeed("brdf", "ix,iy,iz,ox,oy,oz\n0,0,-1,0,0,1\n0,0,1,0.6,0,-0.8\n0,0,1,0,0,1\n");
+    let f: Vec<_> = table(&text)[1..].iter().map(|row| float(row[6])).collect();
+    assert_eq!(f[..2], [0.0, 0.0]);
+    assert!(f[2] > 0.0);
+}
+
+#[test]
+fn header_alone_gives_header_alone() {
+    assert_eq!(succeed("brdf", "ix,iy,iz,ox,oy,oz\n"), "ix,iy,iz,ox,oy,oz,f\n");
+    assert_eq!(succeed("brdf --json", "ix,iy,iz,ox,oy,oz,nx,ny,nz"), "[]\n");
+}
+
+#[test]
+fn json_holds_the_same_numbers() {
+    let input = "ix,iy,iz,ox,oy,oz,nx,ny,nz\n0.60,0,8e-1,0,0,1,0,0,1\n0,0,1,0,0,1,.28,0,.96\n";
+    let text = succeed("brdf --beaufort 4", input);
+    let json: Value = serde_json::from_str(&succeed("brdf --beaufort 4 --json", input)).unwrap();
+    let rows = table(&text);
+    assert_eq!(json.as_array().unwrap().len(), 2);
+    for (row, object) in rows[1..].iter().zip(json.as_array().unwrap()) {
+        let object = object.as_object().unwrap();
+        assert_eq!(object.keys().collect::<Vec<_>>(), rows[0]);
+        for (text, value) in row.iter().zip(object.values()) {
+            assert_eq!(value.as_f64().unwrap(), float(text));
+        }
+    }
+}

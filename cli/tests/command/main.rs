@@ -1,0 +1,73 @@
+//! The command as users run it: the real binary, its streams and its exit status.
+
+mod brdf;
+mod files;
+#[cfg(unix)]
+mod guide;
+mod refusals;
+mod wind;
+
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+fn command() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_prob-water"))
+}
+
+/// Runs `prob-water` with arguments separated by blanks.
+fn run(arguments: &str, input: &str) -> Output {
+    let mut child = command()
+        .args(arguments.split_whitespace())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A command that refuses its flags does not read its input.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    child.wait_with_output().unwrap()
+}
+
+/// Standard output of a run that has to succeed in silence.
+#[track_caller]
+fn succeed(arguments: &str, input: &str) -> String {
+    let output = run(arguments, input);
+    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stderr.is_empty());
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The one line on standard error of a run that has to fail.
+#[track_caller]
+fn refuse(arguments: &str, input: &str) -> String {
+    let output = run(arguments, input);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments}: {message}");
+    assert!(output.stdout.is_empty(), "{arguments}");
+    assert_eq!(message.lines().count(), 1, "{arguments}: {message}");
+    assert!(message.starts_with("prob-water: ") && message.ends_with('\n'), "{message}");
+    message
+}
+
+/// Header and rows of CSV text.
+fn table(text: &str) -> Vec<Vec<&str>> {
+    text.lines().map(|line| line.split(',').collect()).collect()
+}
+
+/// Reference vectors of the library, as text.
+fn vectors(name: &str) -> String {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "../rust-core/tests/data", name].iter().collect();
+    fs::read_to_string(path).unwrap()
+}
+
+fn float(text: &str) -> f64 {
+    text.parse().unwrap()
+}
+
+#[track_caller]
+fn close(found: &str, expected: &str) {
+    let [found, expected] = [found, expected].map(float);
+    assert!((found - expected).abs() <= 1e-10 * expected.abs(), "{found} against {expected}");
+}

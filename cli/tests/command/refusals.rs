@@ -1,0 +1,78 @@
+use crate::refuse;
+
+/// Arguments, then what the message has to name.
+#[test]
+fn arguments() {
+    for (arguments, named) in [
+        ("", &["subcommand"][..]),
+        ("breeze", &["breeze"]),
+        ("wind --gust 3", &["--gust"]),
+        ("wind --ior 0.9", &["ior", "0.9", "1 to 10"]),
+        ("wind --ior 1.3 --ior 1.4", &["--ior"]),
+        ("wind --footprint", &["--footprint"]),
+        ("wind --footprint 0", &["footprint", "0 m"]),
+        ("wind --footprint -inf", &["footprint", "-inf"]),
+        ("wind --wind-direction north", &["wind_direction", "north"]),
+        ("wind --wind-direction nan", &["wind_direction", "NaN"]),
+        ("wind --wind-speed -1", &["wind_speed", "-1"]),
+        ("wind --wind-speed 36.1", &["wind_speed", "36.1", "36 m/s"]),
+        ("wind --friction-velocity 239", &["friction_velocity", "239", "238.65"]),
+        ("wind --beaufort 13", &["beaufort", "13", "0 to 12"]),
+        ("wind --beaufort 2.5", &["beaufort", "2.5"]),
+        ("wind --wind-speed 5 --beaufort 3", &["wind_speed", "beaufort"]),
+        ("wind --friction-velocity 5 --wind-height 3", &["friction_velocity", "wind_height"]),
+        ("wind --wind-height 101", &["wind_height", "101", "0.1 to 100"]),
+        ("wind --wavelength 0.1", &["wavelength", "0.1", "0.2 to 200"]),
+        ("wind --surface wavy", &["surface", "wavy", "flat"]),
+        ("wind --whitecaps maybe", &["whitecaps", "maybe"]),
+        ("wind --table --ior 1.3", &["--table", "--ior"]),
+        ("wind --output no/such/folder/out.csv", &["no/such/folder/out.csv"]),
+        ("brdf no-such-file.csv", &["no-such-file.csv"]),
+        ("brdf a.csv b.csv", &["b.csv"]),
+        ("brdf --ior 0.9", &["ior", "0.9"]),
+    ] {
+        let message = refuse(arguments, "ix,iy,iz,ox,oy,oz\n");
+        for text in named {
+            assert!(message.contains(text), "{arguments}: {message} does not name {text}");
+        }
+    }
+}
+
+#[test]
+fn headers() {
+    for (header, named) in [
+        ("", "ix is missing"),
+        ("ix,iy,iz,ox,oy", "oz is missing"),
+        ("ix,iy,iz,ox,oy,oz,nx,nz", "ny is missing"),
+        ("ix,iy,iz,ox,oy,oz,f", "\"f\" is unknown"),
+        ("ix,iy,iz,ox,oy,oz,ix", "ix is there twice"),
+        ("0,0,1,0,0,1", "header is missing"),
+    ] {
+        let message = refuse("brdf", &format!("{header}\n0,0,1,0,0,1\n"));
+        let message = if header.is_empty() { refuse("brdf", "") } else { message };
+        assert!(message.contains(named), "{header}: {message}");
+    }
+}
+
+#[test]
+fn rows() {
+    for (row, named) in [
+        ("0,0,1,0,0", "column oz is missing"),
+        ("0,0,1,0,0,1,7", "\"7\" follows the last column, oz"),
+        ("0,0,1,0,x,1", "oy = \"x\" is not a number"),
+        ("0,,1,0,0,1", "iy = \"\" is not a number"),
+        ("0,\"a\nb\",1,0,0,1", "iy = \"a b\" is not a number"),
+        ("0,0,1,0,0,nan", "ox,oy,oz = (0, 0, NaN)"),
+        ("0,0,inf,0,0,1", "ix,iy,iz = (0, 0, inf)"),
+        ("0,0,1,0,0,1.001", "ox,oy,oz = (0, 0, 1.001)"),
+    ] {
+        for json in ["", "--json"] {
+            // The good rows before and after it must not be written.
+            let input = format!("ix,iy,iz,ox,oy,oz\n0,0,1,0,0,1\n{row}\n0,0,1,0,0,1\n");
+            let message = refuse(&format!("brdf {json}"), &input);
+            assert!(message.contains(&format!("row 2: {named}")), "{row}: {message}");
+        }
+    }
+    let message = refuse("brdf", "ix,iy,iz,ox,oy,oz,nx,ny,nz\n0,0,1,0,0,1,0,0,-1\n");
+    assert!(message.contains("row 1: nx,ny,nz = (0, 0, -1)"), "{message}");
+}

@@ -1,0 +1,96 @@
+/* The C interface used as a C programmer would: configure, evaluate, sample, and every refusal. */
+#include "prob_water.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void check(int holds, const char *what) {
+    if (!holds) {
+        failures++;
+        printf("FAILED: %s (%s)\n", what, prob_water_last_error());
+    }
+}
+
+static void refuses(const char *name, const char *value) {
+    struct ProbWaterOptions *options = prob_water_options_new();
+    struct ProbWater *sea = NULL;
+    enum ProbWaterStatus status = prob_water_options_set(options, name, value);
+    if (status == PROB_WATER_STATUS_OK)
+        status = prob_water_configure(options, &sea);
+    check(status == PROB_WATER_STATUS_PARAMETER && sea == NULL, name);
+    check(strstr(prob_water_last_error(), name) != NULL, "the message names the parameter");
+    check(strstr(prob_water_last_error(), value) != NULL || strcmp(name, "waves") == 0, "the message names the value");
+    prob_water_options_free(options);
+}
+
+int main(void) {
+    struct ProbWaterOptions *options = prob_water_options_new();
+    struct ProbWater *sea = NULL;
+    struct ProbWaterSummary summary;
+    /* The first three rows: overhead, mirror at 45 degrees, below the horizon. */
+    const double r = 0.70710678118654752;
+    double to_source[9] = {0, 0, 1, -0.70710678118654752, 0, 0.70710678118654752, 0, 0, 1};
+    double to_observer[9] = {0, 0, 1, 0.70710678118654752, 0, 0.70710678118654752, 0, 0, -1};
+    double normals[9] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+    double f[3], g[3], pdf[3], drawn[9];
+    double uniforms[9] = {0.1, 0.2, 0.3, 0.5, 0.5, 0.5, 0.99, 0.01, 0.7};
+    float source32[3] = {0, 0, 1}, f32;
+
+    check(prob_water_options_set_number(options, "friction_velocity", 8.0) == PROB_WATER_STATUS_OK, "set number");
+    check(prob_water_options_set(options, "footprint", "inf") == PROB_WATER_STATUS_OK, "set text");
+    check(prob_water_options_set(options, "ior", "1.33") == PROB_WATER_STATUS_OK, "set ior");
+    check(prob_water_configure(options, &sea) == PROB_WATER_STATUS_OK, "configure");
+    check(strcmp(prob_water_last_error(), "") == 0, "no message after success");
+    check(prob_water_summary(sea, &summary) == PROB_WATER_STATUS_OK, "summary");
+    check(fabs(summary.wind_speed_10 - 2.0065407395637957) < 1e-12, "wind at 10 m");
+    check(fabs(summary.ior - 1.33) < 1e-15, "index");
+
+    check(prob_water_eval(sea, 3, to_source, to_observer, NULL, f) == PROB_WATER_STATUS_OK, "eval");
+    check(f[0] > 0.05 && f[0] < 1 && f[1] > f[0] && f[2] == 0, "values");
+    check(prob_water_eval(sea, 3, to_source, to_observer, normals, g) == PROB_WATER_STATUS_OK, "eval with normals");
+    check(memcmp(f, g, sizeof f) == 0, "a flat sea's normals are up");
+    check(prob_water_eval_f32(sea, 1, source32, source32, NULL, &f32) == PROB_WATER_STATUS_OK, "float32");
+    check(fabs(f32 / f[0] - 1) < 1e-5, "float32 agrees");
+    check(prob_water_sample(sea, 3, to_source, uniforms, drawn, pdf, f) == PROB_WATER_STATUS_OK, "sample");
+    check(prob_water_pdf(sea, 3, to_source, drawn, NULL, g) == PROB_WATER_STATUS_OK, "pdf");
+    check(memcmp(pdf, g, sizeof pdf) == 0, "sample and pdf agree");
+    check(prob_water_eval(sea, 0, NULL, NULL, NULL, NULL) == PROB_WATER_STATUS_OK, "no rows");
+
+    to_observer[3] = 0.8;
+    f[0] = -7;
+    check(prob_water_eval(sea, 3, to_source, to_observer, NULL, f) == PROB_WATER_STATUS_ROW, "not unit");
+    check(strstr(prob_water_last_error(), "row 2") != NULL && f[0] == -7, "names the row and writes nothing");
+    to_observer[3] = NAN;
+    check(prob_water_eval(sea, 3, to_source, to_observer, NULL, f) == PROB_WATER_STATUS_ROW, "not finite");
+    to_observer[3] = r;
+    normals[2] = -1;
+    check(prob_water_eval(sea, 3, to_source, to_observer, normals, f) == PROB_WATER_STATUS_ROW, "normal points down");
+    uniforms[4] = 1;
+    check(prob_water_sample(sea, 3, to_source, uniforms, drawn, pdf, f) == PROB_WATER_STATUS_ROW, "uniform of 1");
+    check(prob_water_eval(NULL, 1, to_source, to_observer, NULL, f) == PROB_WATER_STATUS_ARGUMENT, "null handle");
+    check(prob_water_eval(sea, 1, NULL, to_observer, NULL, f) == PROB_WATER_STATUS_ARGUMENT, "null array");
+    check(prob_water_configure(NULL, &sea) == PROB_WATER_STATUS_ARGUMENT, "null options");
+    check(prob_water_options_set(options, "beaufort", "4") == PROB_WATER_STATUS_PARAMETER, "two winds");
+
+    refuses("friction_velocity", "-1");
+    refuses("wind_speed", "nan");
+    refuses("wind_speed", "40");
+    refuses("footprint", "0");
+    refuses("footprint", "-2");
+    refuses("beaufort", "13");
+    refuses("ior", "0.9");
+    refuses("surface", "lumpy");
+    refuses("whitecaps", "maybe");
+    refuses("waves", "3");
+
+    prob_water_free(sea);
+    prob_water_free(NULL);
+    prob_water_options_free(options);
+    prob_water_options_free(NULL);
+    if (failures == 0)
+        printf("C interface: all checks passed\n");
+    return failures != 0;
+}

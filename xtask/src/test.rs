@@ -1,0 +1,96 @@
+//! Everything that must hold, one step after the other, with a table of the steps at the end.
+//!
+//! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
+
+use crate::{build, c_api, setup, util};
+use anyhow::{Result, bail};
+use std::time::{Duration, Instant};
+
+struct Step {
+    name: &'static str,
+    run: fn() -> Result<Outcome>,
+}
+
+enum Outcome {
+    Passed,
+    Skipped(&'static str),
+}
+use Outcome::{Passed, Skipped};
+
+const STEPS: [Step; 7] = [
+    Step { name: "cargo test", run: cargo_test },
+    Step { name: "header check", run: || c_api::header(true).map(|()| Passed) },
+    Step { name: "C program", run: || c_api::c_test().map(|()| Passed) },
+    Step { name: "plugin build", run: || build::build(&build::default_out()).map(|()| Passed) },
+    Step { name: "pytest", run: pytest },
+    Step { name: "cargo fmt", run: cargo_fmt },
+    Step { name: "cargo clippy", run: cargo_clippy },
+];
+
+/// Runs the steps up to the first that fails.
+pub fn test() -> Result<()> {
+    let start = Instant::now();
+    let mut rows: Vec<(&str, String, Duration)> = Vec::new();
+    let mut failure = None;
+    for (number, step) in STEPS.iter().enumerate() {
+        println!("\n== {}/{} {}", number + 1, STEPS.len(), step.name);
+        let step_start = Instant::now();
+        let result = match (step.run)() {
+            Ok(Passed) => "passed".into(),
+            Ok(Skipped(reason)) => format!("skipped: {reason}"),
+            Err(error) => {
+                failure = Some(format!("{}: {error:#}", step.name));
+                "FAILED".into()
+            }
+        };
+        rows.push((step.name, result, step_start.elapsed()));
+        if failure.is_some() {
+            break;
+        }
+    }
+
+    println!("\n{:<14} {:>9}  result", "step", "time");
+    for (name, result, duration) in &rows {
+        println!("{name:<14} {:>9}  {result}", util::seconds(*duration));
+    }
+    for step in &STEPS[rows.len()..] {
+        println!("{:<14} {:>9}  not run", step.name, "-");
+    }
+    println!("{:<14} {:>9}", "total", util::seconds(start.elapsed()));
+    match failure {
+        Some(failure) => bail!("{failure}"),
+        None => Ok(()),
+    }
+}
+
+fn cargo_test() -> Result<Outcome> {
+    util::run(util::cargo().args(["test", "--workspace"]), "cargo test")?;
+    Ok(Passed)
+}
+
+fn pytest() -> Result<Outcome> {
+    util::run(
+        util::command(setup::python())
+            .args(["-m", "pytest", "validation", "-q", "-rs", "-p", "no:cacheprovider"])
+            .env("PYTHONDONTWRITEBYTECODE", "1"),
+        "pytest",
+    )?;
+    Ok(Passed)
+}
+
+fn cargo_fmt() -> Result<Outcome> {
+    if !util::succeeds(util::cargo().args(["fmt", "--version"])) {
+        return Ok(Skipped("not installed"));
+    }
+    util::run(util::cargo().args(["fmt", "--all", "--check"]), "cargo fmt --check")?;
+    Ok(Passed)
+}
+
+fn cargo_clippy() -> Result<Outcome> {
+    if !util::succeeds(util::cargo().args(["clippy", "--version"])) {
+        return Ok(Skipped("not installed"));
+    }
+    let arguments = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    util::run(util::cargo().args(arguments), "cargo clippy")?;
+    Ok(Passed)
+}
