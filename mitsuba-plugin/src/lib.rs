@@ -1,1 +1,169 @@
-//! x
+//! What the Mitsuba shim calls: configuration and errors over a cxx bridge, the hot path as plain C functions.
+
+use prob_water::brdf::{Parts, up};
+use prob_water::real::{IERFC, IERFC_END, IERFC_SCALE};
+use prob_water::vocabulary::{Builder, ENTRIES, Value};
+use prob_water::{Error, Lobe, Sample};
+
+#[cxx::bridge(namespace = "prob_water")]
+mod ffi {
+    /// The coefficients that the traced variants evaluate: `prob_water::Lobe`, in float32, and the
+    /// polynomial of the shadowing function.
+    struct Coefficients {
+        cos_wind: f32,
+        sin_wind: f32,
+        sigma_u: f32,
+        sigma_c: f32,
+        scale: f32,
+        c21: f32,
+        c03: f32,
+        steep_cos: f32,
+        steep_bound: f32,
+        sigma_shadow: f32,
+        bound: f32,
+        proposal_u: f32,
+        proposal_c: f32,
+        normal_reflectance: f32,
+        ior2: f32,
+        whitecap_fraction: f32,
+        whitecap_brdf: f32,
+        exact: bool,
+        slope_measure: bool,
+        gram_charlier: bool,
+        shadowing: bool,
+        bounded: bool,
+        as_printed: bool,
+        ierfc: [f32; 7],
+        ierfc_scale: f32,
+        ierfc_end: f32,
+    }
+
+    extern "Rust" {
+        /// Parameters being collected.
+        type Options;
+        fn options() -> Box<Options>;
+        fn set_number(self: &mut Options, name: &str, value: f64) -> Result<()>;
+        fn set_flag(self: &mut Options, name: &str, value: bool) -> Result<()>;
+        fn set_text(self: &mut Options, name: &str, value: &str) -> Result<()>;
+        fn configure(self: &Options) -> Result<Box<Water>>;
+        /// Every name of the vocabulary.
+        fn vocabulary() -> Vec<String>;
+
+        /// A configured sea.
+        type Water;
+        fn coefficients(self: &Water) -> Coefficients;
+        /// Value of a numeric parameter in force, by name; NaN for one that is not set.
+        fn number(self: &Water, name: &str) -> f64;
+        /// `name = value` lines of the parameters and of what follows from them.
+        fn describe(self: &Water) -> String;
+    }
+}
+
+/// Parameters being collected.
+struct Options(Builder);
+
+fn options() -> Box<Options> {
+    Box::new(Options(Builder::default()))
+}
+
+fn vocabulary() -> Vec<String> {
+    ENTRIES.iter().map(|e| e.name.to_string()).collect()
+}
+
+impl Options {
+    fn set_number(&mut self, name: &str, value: f64) -> Result<(), Error> {
+        self.0.set(name, &Value::Number(value))
+    }
+
+    fn set_flag(&mut self, name: &str, value: bool) -> Result<(), Error> {
+        self.0.set(name, &Value::Flag(value))
+    }
+
+    fn set_text(&mut self, name: &str, value: &str) -> Result<(), Error> {
+        self.0.set(name, &Value::Text(value.into()))
+    }
+
+    fn configure(&self) -> Result<Box<Water>, Error> {
+        let water = self.0.parameters()?.configure()?;
+        Ok(Box::new(Water { water, lobe: water.lobe.cast() }))
+    }
+}
+
+/// A configured sea, with the lobe in Mitsuba's float32.
+pub struct Water {
+    water: prob_water::Water,
+    lobe: Lobe<f32>,
+}
+
+impl Water {
+    fn coefficients(&self) -> ffi::Coefficients {
+        let (f, lobe) = (&self.lobe.facets, &self.lobe);
+        ffi::Coefficients {
+            cos_wind: f.cos_wind,
+            sin_wind: f.sin_wind,
+            sigma_u: f.sigma_u,
+            sigma_c: f.sigma_c,
+            scale: f.scale,
+            c21: f.c21,
+            c03: f.c03,
+            steep_cos: f.steep_cos,
+            steep_bound: f.steep_bound,
+            sigma_shadow: f.sigma_shadow,
+            bound: f.bound,
+            proposal_u: f.proposal_u,
+            proposal_c: f.proposal_c,
+            normal_reflectance: f.reflectance.normal,
+            ior2: f.reflectance.ior2,
+            whitecap_fraction: lobe.whitecap_fraction,
+            whitecap_brdf: lobe.whitecap_brdf,
+            exact: f.reflectance.exact,
+            slope_measure: f.slope_measure,
+            gram_charlier: f.gram_charlier,
+            shadowing: f.shadowing,
+            bounded: f.bounded,
+            as_printed: f.as_printed,
+            ierfc: IERFC,
+            ierfc_scale: IERFC_SCALE,
+            ierfc_end: IERFC_END,
+        }
+    }
+
+    fn number(&self, name: &str) -> f64 {
+        match self.water.parameters.get(name) {
+            Some(Value::Number(x)) => x,
+            _ => f64::NAN,
+        }
+    }
+
+    fn describe(&self) -> String {
+        self.water.to_string()
+    }
+}
+
+fn parts(bits: u32) -> Parts {
+    Parts { facets: bits & 1 != 0, whitecaps: bits & 2 != 0 }
+}
+
+/// f cos(theta_o) of the parts in `bits` (1 facets, 2 whitecaps), about the normal (0, 0, 1).
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_bsdf_eval(water: &Water, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
+    water.lobe.eval_parts(*i, *o, up(), parts(bits)) * o[2].max(0.0)
+}
+
+/// Density, 1/sr, with which [`prob_water_bsdf_sample`] draws `o`.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_bsdf_pdf(water: &Water, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
+    water.lobe.pdf_parts(*i, *o, up(), parts(bits))
+}
+
+/// Draws a direction from three uniform numbers.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_bsdf_sample(
+    water: &Water,
+    bits: u32,
+    i: &[f32; 3],
+    u: &[f32; 3],
+    sample: &mut Sample<f32>,
+) {
+    *sample = water.lobe.sample_parts(*i, up(), *u, parts(bits));
+}

@@ -3,11 +3,11 @@
 //! Directions are unit vectors away from the surface: `i` to the source, `o` to the observer,
 //! `n` the wave normal, in coordinates with z up. A direction below the horizon of `n` gives 0.
 
+use crate::Real;
 use crate::optics::Reflectance;
 use crate::real::{Vec3, dot};
 use crate::shadowing::hidden;
 use crate::slopes::gram_charlier;
-use crate::Real;
 
 /// The normal of a flat sea.
 pub fn up<T: Real>() -> Vec3<T> {
@@ -160,7 +160,9 @@ impl<T: Real> Facets<T> {
         let mut area = ci * cr;
         if self.shadowing {
             let sine = |c: T| T::max(one - c * c, T::of(0.0)).sqrt();
-            area = area + cr * hidden(ci, self.sigma_shadow * sine(ci)) + ci * hidden(cr, self.sigma_shadow * sine(cr));
+            area = area
+                + cr * hidden(ci, self.sigma_shadow * sine(ci))
+                + ci * hidden(cr, self.sigma_shadow * sine(cr));
         }
         let value = rho / T::max(area, T::TINY);
         if self.bounded { T::min(value, self.visible_bound(g.cos, i, o, n)) } else { value }
@@ -171,7 +173,9 @@ impl<T: Real> Facets<T> {
     /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1.
     #[inline(always)]
     fn visible_bound(&self, [ci, cr]: [T; 2], i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
-        let visible = |c: T, v: Vec3<T>| c + hidden(c, T::of(std::f64::consts::SQRT_2) * self.spread(v, n, self.sigma_u, self.sigma_c));
+        let visible = |c: T, v: Vec3<T>| {
+            c + hidden(c, T::of(std::f64::consts::SQRT_2) * self.spread(v, n, self.sigma_u, self.sigma_c))
+        };
         self.bound / T::max(T::max(visible(ci, i) * cr, visible(cr, o) * ci), T::TINY)
     }
 

@@ -104,7 +104,11 @@ unsafe fn utf8<'a>(text: *const c_char, what: &str) -> Result<&'a str, (ProbWate
 
 /// # Safety
 /// `data` is null or points at `rows` triples.
-unsafe fn triples<'a, T>(data: *const T, rows: usize, what: &str) -> Result<&'a [Vec3<T>], (ProbWaterStatus, String)> {
+unsafe fn triples<'a, T>(
+    data: *const T,
+    rows: usize,
+    what: &str,
+) -> Result<&'a [Vec3<T>], (ProbWaterStatus, String)> {
     if rows == 0 {
         return Ok(&[]);
     }
@@ -117,7 +121,11 @@ unsafe fn triples<'a, T>(data: *const T, rows: usize, what: &str) -> Result<&'a 
 
 /// # Safety
 /// `data` is null or points at `len` elements that nothing else refers to.
-unsafe fn output<'a, T>(data: *mut T, len: usize, what: &str) -> Result<&'a mut [T], (ProbWaterStatus, String)> {
+unsafe fn output<'a, T>(
+    data: *mut T,
+    len: usize,
+    what: &str,
+) -> Result<&'a mut [T], (ProbWaterStatus, String)> {
     if len == 0 {
         return Ok(&mut []);
     }
@@ -229,7 +237,10 @@ pub unsafe extern "C" fn prob_water_free(sea: *mut ProbWater) {
 /// # Safety
 /// `sea` comes from `prob_water_configure`; `summary` points at a place for the result.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn prob_water_summary(sea: *const ProbWater, summary: *mut ProbWaterSummary) -> ProbWaterStatus {
+pub unsafe extern "C" fn prob_water_summary(
+    sea: *const ProbWater,
+    summary: *mut ProbWaterSummary,
+) -> ProbWaterStatus {
     guarded(|| {
         // SAFETY: by this function's contract.
         let water = &unsafe { sea.as_ref() }.ok_or_else(|| null("sea"))?.water;
@@ -264,7 +275,11 @@ unsafe fn batch<T: Real>(
 ) -> Result<(), (ProbWaterStatus, String)> {
     // SAFETY: by this function's contract.
     let (i, o, out) = unsafe {
-        (triples(to_source, rows, "to_source")?, triples(to_observer, rows, "to_observer")?, output(out, rows, "out")?)
+        (
+            triples(to_source, rows, "to_source")?,
+            triples(to_observer, rows, "to_observer")?,
+            output(out, rows, "out")?,
+        )
     };
     // SAFETY: by this function's contract.
     let n = if normals.is_null() { None } else { Some(unsafe { triples(normals, rows, "normals")? }) };
@@ -301,7 +316,9 @@ pub unsafe extern "C" fn prob_water_eval(
     f: *mut c_double,
 ) -> ProbWaterStatus {
     // SAFETY: by this function's contract.
-    unsafe { with_sea(sea, |s| batch(&s.water.lobe, Quantity::Brdf, rows, [to_source, to_observer, normals], f)) }
+    unsafe {
+        with_sea(sea, |s| batch(&s.water.lobe, Quantity::Brdf, rows, [to_source, to_observer, normals], f))
+    }
 }
 
 /// `prob_water_eval` in float32.
@@ -335,7 +352,9 @@ pub unsafe extern "C" fn prob_water_pdf(
     pdf: *mut c_double,
 ) -> ProbWaterStatus {
     // SAFETY: by this function's contract.
-    unsafe { with_sea(sea, |s| batch(&s.water.lobe, Quantity::Pdf, rows, [to_source, to_observer, normals], pdf)) }
+    unsafe {
+        with_sea(sea, |s| batch(&s.water.lobe, Quantity::Pdf, rows, [to_source, to_observer, normals], pdf))
+    }
 }
 
 /// Draws an observer's direction for every row's source from three uniform numbers of [0, 1) a

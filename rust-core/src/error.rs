@@ -8,7 +8,17 @@ pub enum Error {
         parameter: &'static str,
         /// The value as given.
         value: String,
-        /// The range or the list of choices, with units.
+        /// The range, with units.
+        allowed: String,
+    },
+    /// A word that is not one of the parameter's choices.
+    #[error("{parameter} = {value} is unknown: allowed is {allowed}")]
+    UnknownChoice {
+        /// The parameter's name in the vocabulary.
+        parameter: &'static str,
+        /// The word as given.
+        value: String,
+        /// The choices.
         allowed: String,
     },
     /// A value of the wrong kind (a word where a number belongs, say).
@@ -30,12 +40,18 @@ pub enum Error {
         known: String,
     },
     /// Parameters that exclude each other, both given.
-    #[error("{first} and {second} are both given: allowed is one of {allowed}")]
+    #[error(
+        "{first} = {first_value} and {second} = {second_value} are both given: allowed is one of {allowed}"
+    )]
     Conflict {
         /// The one given first.
         first: &'static str,
+        /// Its value.
+        first_value: String,
         /// The one given second.
         second: &'static str,
+        /// Its value.
+        second_value: String,
         /// The group they belong to.
         allowed: &'static str,
     },

@@ -26,7 +26,8 @@ pub const SEA_SALT: f64 = 0.000_174_927_11 * (0.03 + 1.805 * 19.0);
 pub fn pure_water(wavelength: f64) -> f64 {
     let mut previous: Option<(f64, f64)> = None;
     for line in HALE_QUERRY.lines().skip(1) {
-        let mut fields = line.split(',').map(|x| x.trim().parse::<f64>().expect("a number in the embedded table"));
+        let mut fields =
+            line.split(',').map(|x| x.trim().parse::<f64>().expect("a number in the embedded table"));
         let (l, n) = (fields.next().expect("wavelength"), fields.next().expect("n"));
         if wavelength <= l {
             return match previous {
@@ -126,7 +127,8 @@ mod tests {
     /// model.md: Schlick against exact is -20 % at 45 degrees, -14 % at 60, +15 % at 80.
     #[test]
     fn schlick_errs_as_documented() {
-        let (s, e) = (Reflectance::<f64>::new(1.33, Fresnel::Schlick), Reflectance::new(1.33, Fresnel::Exact));
+        let (s, e) =
+            (Reflectance::<f64>::new(1.33, Fresnel::Schlick), Reflectance::new(1.33, Fresnel::Exact));
         for (degrees, error) in [(45.0f64, -0.20), (60.0, -0.14), (80.0, 0.15)] {
             let c = degrees.to_radians().cos();
             assert!((s.eval(c) / e.eval(c) - 1.0 - error).abs() < 0.01);

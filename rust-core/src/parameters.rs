@@ -110,10 +110,20 @@ impl Parameters {
     /// Checks everything and computes what depends on the parameters alone.
     pub fn configure(&self) -> Result<Water, Error> {
         let wind = self.wind.profile()?;
-        require("wind_direction", self.wind_direction, self.wind_direction.is_finite(), "any finite angle, degrees")?;
+        require(
+            "wind_direction",
+            self.wind_direction,
+            self.wind_direction.is_finite(),
+            "any finite angle, degrees",
+        )?;
         require("footprint", self.footprint, self.footprint > 0.0, "above 0 m, up to inf")?;
         let [first, last] = optics::WAVELENGTHS;
-        require("wavelength", self.wavelength, (first..=last).contains(&self.wavelength), "0.2 to 200 micrometres")?;
+        require(
+            "wavelength",
+            self.wavelength,
+            (first..=last).contains(&self.wavelength),
+            "0.2 to 200 micrometres",
+        )?;
         if let Some(ior) = self.ior {
             require("ior", ior, (1.0..=10.0).contains(&ior), "1 to 10")?;
         }

@@ -124,15 +124,8 @@ impl Real for f64 {
 /// `ierfc(x) exp(x^2)` as a polynomial in `1/(1 + IERFC_SCALE x)`, constant term first: minimax
 /// on [0, [`IERFC_END`]] for the error relative to `x + ierfc(x)/2`, which is what the shadowing
 /// function passes on (3e-8; 1.2e-6 evaluated in float32). The Dr.Jit twin reads the same numbers.
-pub const IERFC: [f32; 7] = [
-    0.008_989_995,
-    -0.043_938_935,
-    0.050_629_68,
-    0.511_808_2,
-    -0.960_971_3,
-    1.353_942_1,
-    -0.356_270_16,
-];
+pub const IERFC: [f32; 7] =
+    [0.008_989_995, -0.043_938_935, 0.050_629_68, 0.511_808_2, -0.960_971_3, 1.353_942_1, -0.356_270_16];
 /// Scale of the argument of [`IERFC`].
 pub const IERFC_SCALE: f32 = 0.42;
 /// Beyond this argument ierfc is below 4e-10 and held constant.

@@ -10,9 +10,9 @@
 //! elementary functions is needed, and against the ideal, area-weighted density its weight is at
 //! most 1.22 (`v = 1/D` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
+use crate::Real;
 use crate::brdf::{Facets, Lobe, Parts};
 use crate::real::{Vec3, dot};
-use crate::Real;
 
 /// Reflectance of a whitecap below 0.6 micrometres: its share in choosing a lobe.
 const WHITECAP_ALBEDO: f64 = 0.22;
@@ -115,7 +115,9 @@ impl<T: Real> Facets<T> {
         if !self.slope_measure {
             let upright = T::of(std::f64::consts::FRAC_PI_2);
             let valid = T::lt(tilt[0].abs(), upright) & T::lt(tilt[1].abs(), upright);
-            return self.keep_or_turn(i, n, tilt.map(|x| T::select(valid, x, zero)), in_tail, rest).map(|x| T::select(valid, x, zero));
+            return self
+                .keep_or_turn(i, n, tilt.map(|x| T::select(valid, x, zero)), in_tail, rest)
+                .map(|x| T::select(valid, x, zero));
         }
         self.keep_or_turn(i, n, tilt, in_tail, rest)
     }
@@ -149,9 +151,14 @@ impl<T: Real> Facets<T> {
         let b = self.shown(i, n, turned, j_turned);
         let rd = z[0] * p.towards[0] + z[1] * p.towards[1];
         let shape = two * a / T::max(a + b, T::TINY) + T::select(T::lt(one, rd), rd, zero);
-        let gauss = T::exp(T::of(-0.5) * (z[0] * z[0] + z[1] * z[1])) / (T::of(std::f64::consts::TAU) * self.proposal_u * self.proposal_c);
+        let gauss = T::exp(T::of(-0.5) * (z[0] * z[0] + z[1] * z[1]))
+            / (T::of(std::f64::consts::TAU) * self.proposal_u * self.proposal_c);
         let pdf = gauss * shape / ((one + p.tail) * T::max(T::of(4.0) * g.cos_zeta * jacobian, T::TINY));
-        let valid = T::lt(zero, g.cos[0]) & T::lt(zero, g.cos[1]) & T::lt(zero, jacobian) & T::lt(zero, g.tilt_u[1]) & T::lt(zero, g.tilt_c[1]);
+        let valid = T::lt(zero, g.cos[0])
+            & T::lt(zero, g.cos[1])
+            & T::lt(zero, jacobian)
+            & T::lt(zero, g.tilt_u[1])
+            & T::lt(zero, g.tilt_c[1]);
         T::select(valid, T::min(pdf, T::MAX), zero)
     }
 }
@@ -175,7 +182,9 @@ impl Facets<f64> {
                 wanted.push(((density * measure).ln(), 0.5 * (u * u + c * c)));
             }
         }
-        let worst = |s: f64| wanted.iter().map(|(ln, half)| ln + half / (s * s)).fold(f64::MIN, f64::max) + 2.0 * s.ln();
+        let worst = |s: f64| {
+            wanted.iter().map(|(ln, half)| ln + half / (s * s)).fold(f64::MIN, f64::max) + 2.0 * s.ln()
+        };
         let ladder = (0..=100).map(|k| 1.0 + 0.02 * f64::from(k));
         ladder.min_by(|a, b| worst(*a).total_cmp(&worst(*b))).unwrap_or(1.0)
     }

@@ -2,7 +2,7 @@
 
 use crate::optics::Fresnel;
 use crate::wind::Wind;
-use crate::{Body, Error, Parameters, Readings, SlopeMeasure, Surface};
+use crate::{Body, Error, Parameters, Readings, SlopeMeasure, Surface, Water};
 
 /// A parameter as documentation and help show it.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,12 @@ pub const ENTRIES: [Entry; 16] = [
     entry("ior", "", "", "refractive index, 1 to 10; else Hale and Querry's at the wavelength"),
     entry("water", "", "ocean", "ocean or fresh: sea salt raises the index by 0.006"),
     entry("fresnel", "", "schlick", "schlick (Eq. 63) or exact"),
-    entry("slope_measure", "", "angle", "slope density Gaussian in tilt angles (as printed) or in slopes: angle or slope"),
+    entry(
+        "slope_measure",
+        "",
+        "angle",
+        "slope density Gaussian in tilt angles (as printed) or in slopes: angle or slope",
+    ),
     entry("readings", "", "corrected", "corrected or as_printed equations, see docs/model.md"),
     entry("whitecaps", "", "true", "blend in whitecaps (Eqs. 51, 55)"),
     entry("shadowing", "", "true", "apply the shadowing function (Eqs. 64-67)"),
@@ -82,13 +87,24 @@ fn flag(parameter: &'static str, value: &Value) -> Result<bool, Error> {
     }
 }
 
+const SURFACES: [(&str, Surface); 1] = [("flat", Surface::Flat)];
+const WATERS: [(&str, Body); 2] = [("ocean", Body::Ocean), ("fresh", Body::Fresh)];
+const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
+const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
+const READINGS: [(&str, Readings); 2] =
+    [("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)];
+
+fn word<C: PartialEq>(choice: &C, choices: &[(&str, C)]) -> Option<Value> {
+    choices.iter().find(|(_, c)| c == choice).map(|(name, _)| Value::Text((*name).into()))
+}
+
 fn choice<C: Copy>(parameter: &'static str, value: &Value, choices: &[(&str, C)]) -> Result<C, Error> {
     let Value::Text(text) = value else {
         return Err(wrong_type(parameter, value, "a word"));
     };
     match choices.iter().find(|(name, _)| name == text) {
         Some((_, choice)) => Ok(*choice),
-        None => Err(Error::OutOfRange {
+        None => Err(Error::UnknownChoice {
             parameter,
             value: text.clone(),
             allowed: choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "),
@@ -96,15 +112,67 @@ fn choice<C: Copy>(parameter: &'static str, value: &Value, choices: &[(&str, C)]
     }
 }
 
+impl Parameters {
+    /// The value of a parameter by its name; `None` for one that is not set or not known.
+    pub fn get(&self, name: &str) -> Option<Value> {
+        let number = |x: f64| Some(Value::Number(x));
+        match (name, self.wind) {
+            ("wind_speed", Wind::Speed { speed, .. }) => number(speed),
+            ("wind_height", Wind::Speed { height, .. }) => number(height),
+            ("friction_velocity", Wind::FrictionVelocity(w)) => number(w),
+            ("beaufort", Wind::Beaufort(b)) => number(f64::from(b)),
+            ("wind_direction", _) => number(self.wind_direction),
+            ("footprint", _) => number(self.footprint),
+            ("surface", _) => word(&self.surface, &SURFACES),
+            ("wavelength", _) => number(self.wavelength),
+            ("ior", _) => self.ior.and_then(number),
+            ("water", _) => word(&self.water, &WATERS),
+            ("fresnel", _) => word(&self.fresnel, &FRESNELS),
+            ("slope_measure", _) => word(&self.slope_measure, &MEASURES),
+            ("readings", _) => word(&self.readings, &READINGS),
+            ("whitecaps", _) => Some(Value::Flag(self.whitecaps)),
+            ("shadowing", _) => Some(Value::Flag(self.shadowing)),
+            ("gram_charlier", _) => Some(Value::Flag(self.gram_charlier)),
+            _ => None,
+        }
+    }
+}
+
+/// The parameters in force, a `name = value` a line, and what follows from them.
+impl std::fmt::Display for Water {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for entry in &ENTRIES {
+            if let Some(value) = self.parameters.get(entry.name) {
+                writeln!(f, "{} = {value}", entry.name)?;
+            }
+        }
+        writeln!(f, "[friction_velocity_cm_s = {}]", self.wind.friction_velocity)?;
+        writeln!(f, "[sigma_u2 = {:.6}, sigma_c2 = {:.6}]", self.variances[0], self.variances[1])?;
+        write!(f, "[whitecap_fraction = {:.6}, ior = {:.6}]", self.whitecap_fraction, self.ior)
+    }
+}
+
 /// Fills [`Parameters`] from named values; what is not named keeps its default.
 #[derive(Debug, Clone, Default)]
 pub struct Builder {
     parameters: Parameters,
-    wind_from: Option<&'static str>,
+    /// Which wind was given, and as what.
+    wind_from: Option<(&'static str, String)>,
     wind_height: Option<f64>,
 }
 
-const WINDS: &str = "wind_speed (with wind_height), friction_velocity, beaufort";
+fn conflict(
+    (first, first_value): &(&'static str, String),
+    (second, second_value): (&'static str, String),
+) -> Error {
+    Error::Conflict {
+        first,
+        first_value: first_value.clone(),
+        second,
+        second_value,
+        allowed: "wind_speed (with wind_height), friction_velocity, beaufort",
+    }
+}
 
 impl Builder {
     /// Sets one parameter by its name.
@@ -118,12 +186,12 @@ impl Builder {
         match name {
             "wind_speed" => {
                 let speed = number(name, value)?;
-                self.wind(name, Wind::Speed { speed, height: 10.0 })?;
+                self.wind(name, value, Wind::Speed { speed, height: 10.0 })?;
             }
             "wind_height" => self.wind_height = Some(number(name, value)?),
             "friction_velocity" => {
                 let w = number(name, value)?;
-                self.wind(name, Wind::FrictionVelocity(w))?;
+                self.wind(name, value, Wind::FrictionVelocity(w))?;
             }
             "beaufort" => {
                 let b = number(name, value)?;
@@ -131,21 +199,17 @@ impl Builder {
                     let allowed = "a whole number from 0 to 12".into();
                     return Err(Error::OutOfRange { parameter: name, value: value.to_string(), allowed });
                 }
-                self.wind(name, Wind::Beaufort(b as u8))?;
+                self.wind(name, value, Wind::Beaufort(b as u8))?;
             }
             "wind_direction" => p.wind_direction = number(name, value)?,
             "footprint" => p.footprint = number(name, value)?,
-            "surface" => p.surface = choice(name, value, &[("flat", Surface::Flat)])?,
+            "surface" => p.surface = choice(name, value, &SURFACES)?,
             "wavelength" => p.wavelength = number(name, value)?,
             "ior" => p.ior = Some(number(name, value)?),
-            "water" => p.water = choice(name, value, &[("ocean", Body::Ocean), ("fresh", Body::Fresh)])?,
-            "fresnel" => p.fresnel = choice(name, value, &[("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)])?,
-            "slope_measure" => {
-                p.slope_measure = choice(name, value, &[("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)])?
-            }
-            "readings" => {
-                p.readings = choice(name, value, &[("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)])?
-            }
+            "water" => p.water = choice(name, value, &WATERS)?,
+            "fresnel" => p.fresnel = choice(name, value, &FRESNELS)?,
+            "slope_measure" => p.slope_measure = choice(name, value, &MEASURES)?,
+            "readings" => p.readings = choice(name, value, &READINGS)?,
             "whitecaps" => p.whitecaps = flag(name, value)?,
             "shadowing" => p.shadowing = flag(name, value)?,
             "gram_charlier" => p.gram_charlier = flag(name, value)?,
@@ -154,11 +218,11 @@ impl Builder {
         Ok(())
     }
 
-    fn wind(&mut self, name: &'static str, wind: Wind) -> Result<(), Error> {
-        if let Some(first) = self.wind_from.filter(|first| *first != name) {
-            return Err(Error::Conflict { first, second: name, allowed: WINDS });
+    fn wind(&mut self, name: &'static str, value: &Value, wind: Wind) -> Result<(), Error> {
+        if let Some(first) = self.wind_from.as_ref().filter(|(first, _)| *first != name) {
+            return Err(conflict(first, (name, value.to_string())));
         }
-        self.wind_from = Some(name);
+        self.wind_from = Some((name, value.to_string()));
         self.parameters.wind = wind;
         Ok(())
     }
@@ -170,11 +234,109 @@ impl Builder {
             match &mut p.wind {
                 Wind::Speed { height, .. } => *height = h,
                 _ => {
-                    let first = self.wind_from.unwrap_or("wind_speed");
-                    return Err(Error::Conflict { first, second: "wind_height", allowed: WINDS });
+                    let first = self.wind_from.clone().unwrap_or_default();
+                    return Err(conflict(&first, ("wind_height", h.to_string())));
                 }
             }
         }
         Ok(p)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_set_can_be_read() {
+        let values = [
+            ("wind_speed", Value::Number(7.0)),
+            ("wind_height", Value::Number(19.5)),
+            ("friction_velocity", Value::Number(8.0)),
+            ("beaufort", Value::Number(4.0)),
+            ("wind_direction", Value::Number(-30.0)),
+            ("footprint", Value::Number(0.15)),
+            ("surface", Value::Text("flat".into())),
+            ("wavelength", Value::Number(1.064)),
+            ("ior", Value::Number(1.33)),
+            ("water", Value::Text("fresh".into())),
+            ("fresnel", Value::Text("exact".into())),
+            ("slope_measure", Value::Text("slope".into())),
+            ("readings", Value::Text("as_printed".into())),
+            ("whitecaps", Value::Flag(false)),
+            ("shadowing", Value::Flag(false)),
+            ("gram_charlier", Value::Flag(false)),
+        ];
+        assert_eq!(values.len(), ENTRIES.len());
+        for (name, value) in values {
+            for given in [value.clone(), Value::Text(value.to_string())] {
+                let mut builder = Builder::default();
+                builder.set(name, &given).unwrap();
+                let p = builder.parameters().unwrap();
+                p.configure().unwrap();
+                assert_eq!(p.get(name), Some(value.clone()));
+            }
+        }
+    }
+
+    #[test]
+    fn defaults_are_as_documented() {
+        for entry in ENTRIES {
+            let found = Parameters::default().get(entry.name).map_or(String::new(), |v| v.to_string());
+            assert_eq!(found, entry.default, "{}", entry.name);
+        }
+    }
+
+    #[test]
+    fn refusals_name_parameter_value_and_range() {
+        let number = |x: f64| Value::Number(x);
+        let text = |x: &str| Value::Text(x.into());
+        for (name, value) in [
+            ("wind_speed", number(-1.0)),
+            ("wind_speed", number(f64::NAN)),
+            ("wind_speed", number(36.1)),
+            ("wind_height", number(0.0)),
+            ("friction_velocity", number(239.0)),
+            ("friction_velocity", text("fast")),
+            ("beaufort", number(13.0)),
+            ("beaufort", number(2.5)),
+            ("wind_direction", number(f64::INFINITY)),
+            ("footprint", number(0.0)),
+            ("footprint", number(-1.0)),
+            ("footprint", number(f64::NAN)),
+            ("surface", text("lumpy")),
+            ("wavelength", number(0.1)),
+            ("ior", number(0.99)),
+            ("ior", number(f64::INFINITY)),
+            ("whitecaps", number(1.0)),
+            ("fresnel", Value::Flag(true)),
+        ] {
+            let mut builder = Builder::default();
+            let error = builder
+                .set(name, &value)
+                .and_then(|()| builder.parameters())
+                .and_then(|p| p.configure())
+                .expect_err(name)
+                .to_string();
+            assert!(error.contains(name) && error.contains(&value.to_string()), "{error}");
+        }
+    }
+
+    #[test]
+    fn one_wind_only() {
+        for (first, second) in
+            [("wind_speed", "beaufort"), ("beaufort", "friction_velocity"), ("beaufort", "wind_height")]
+        {
+            let mut builder = Builder::default();
+            builder.set(first, &Value::Number(3.0)).unwrap();
+            let error =
+                builder.set(second, &Value::Number(7.0)).and_then(|()| builder.parameters()).unwrap_err();
+            assert!(matches!(error, Error::Conflict { .. }), "{error}");
+            assert!(error.to_string().contains("3") && error.to_string().contains("7"));
+        }
+        assert!(matches!(
+            Builder::default().set("waves", &Value::Number(1.0)),
+            Err(Error::UnknownParameter { .. })
+        ));
     }
 }

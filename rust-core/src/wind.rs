@@ -150,7 +150,7 @@ impl Wind {
                 if !(0.0..=FRICTION_VELOCITY_END).contains(&w) {
                     return refuse("friction_velocity", w, "0 to 238.65 cm/s, the end of Table 1".into());
                 }
-                w
+                w.abs() // -0 is a calm like 0
             }
             Wind::Beaufort(number) => match BEAUFORT_FRICTION_VELOCITY.get(usize::from(number)) {
                 Some(&w) => w,
@@ -175,7 +175,8 @@ impl WindProfile {
     /// The Beaufort number whose Table 1 range of w10 holds this wind; where the ranges leave a
     /// gap, the one whose end is nearest.
     pub fn beaufort(&self) -> usize {
-        let distance = |r: &BeaufortRow| (r.wind_speed[0] - self.w10).max(self.w10 - r.wind_speed[1]).max(0.0);
+        let distance =
+            |r: &BeaufortRow| (r.wind_speed[0] - self.w10).max(self.w10 - r.wind_speed[1]).max(0.0);
         let mut best = 0;
         for (i, row) in TABLE_1.iter().enumerate() {
             if distance(row) < distance(&TABLE_1[best]) {

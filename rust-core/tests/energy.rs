@@ -22,14 +22,21 @@ fn flat_sea_albedo_is_at_most_one() {
                     for theta in [0.0, 60.0, 80.0, 87.0, 89.0, 89.7, 89.97, 89.999] {
                         for phi in [0.0, 90.0] {
                             let i = direction(theta, phi);
-                            let sum = |steps| integrate(&water.lobe, i, UP, steps, |o| water.lobe.eval(i, o, UP) * o[2]);
+                            let sum = |steps| {
+                                integrate(&water.lobe, i, UP, steps, |o| water.lobe.eval(i, o, UP) * o[2])
+                            };
                             let mut albedo = sum(120);
                             if albedo > 0.97 {
                                 // The horizon cuts the lobe: refine where a percent decides.
                                 albedo = sum(700);
                             }
                             if albedo > worst.0 {
-                                worst = (albedo, format!("w* {w}, {theta} deg, azimuth {phi}, {slope_measure:?}, {fresnel:?}, Gram-Charlier {gram_charlier}"));
+                                worst = (
+                                    albedo,
+                                    format!(
+                                        "w* {w}, {theta} deg, azimuth {phi}, {slope_measure:?}, {fresnel:?}, Gram-Charlier {gram_charlier}"
+                                    ),
+                                );
                             }
                         }
                     }
@@ -86,7 +93,9 @@ fn reciprocal_and_finite_about_any_normal() {
     let mut seas = Vec::new();
     for w in WINDS.into_iter().chain(HURRICANES) {
         for footprint in [0.001, 0.15, f64::INFINITY] {
-            for (readings, shadowing) in [(Readings::Corrected, true), (Readings::Corrected, false), (Readings::AsPrinted, true)] {
+            for (readings, shadowing) in
+                [(Readings::Corrected, true), (Readings::Corrected, false), (Readings::AsPrinted, true)]
+            {
                 seas.push(water(w, |p| {
                     p.wind_direction = 33.0;
                     p.whitecaps = true;
@@ -125,8 +134,12 @@ fn finite_at_the_edges() {
                 for zo in tiny {
                     for x in [-1.0f32, 1.0] {
                         let (i, o) = ([1.0, 0.0, zi], [x, 0.0, zo]);
-                        let (f, pdf) = (single.eval(i, o, [0.0, 0.0, 1.0]), single.pdf(i, o, [0.0, 0.0, 1.0]));
-                        assert!(f.is_finite() && f >= 0.0 && pdf.is_finite() && pdf >= 0.0, "{f} {pdf} {i:?} {o:?}");
+                        let (f, pdf) =
+                            (single.eval(i, o, [0.0, 0.0, 1.0]), single.pdf(i, o, [0.0, 0.0, 1.0]));
+                        assert!(
+                            f.is_finite() && f >= 0.0 && pdf.is_finite() && pdf >= 0.0,
+                            "{f} {pdf} {i:?} {o:?}"
+                        );
                         if zi <= 0.0 || zo <= 0.0 {
                             assert!(f == 0.0 && pdf == 0.0);
                         }
@@ -142,7 +155,8 @@ fn mixture_with_whitecaps() {
     let water = water(56.0, |p| p.whitecaps = true);
     let (i, o) = (direction(40.0, 10.0), direction(35.0, 170.0));
     let smooth = water.lobe.facets.eval(i, o, UP);
-    let expected = (1.0 - 0.024_587_986_758_358_254) * smooth + 0.024_587_986_758_358_254 * 0.22 / std::f64::consts::PI;
+    let expected =
+        (1.0 - 0.024_587_986_758_358_254) * smooth + 0.024_587_986_758_358_254 * 0.22 / std::f64::consts::PI;
     assert!((water.lobe.eval(i, o, UP) / expected - 1.0).abs() < 1e-12);
     assert_eq!(water.lobe.eval(i, direction(91.0, 0.0), UP), 0.0);
     assert!(dot(i, UP) > 0.0);

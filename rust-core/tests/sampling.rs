@@ -27,7 +27,8 @@ fn draws_follow_the_density_about_any_normal() {
                     }
                     let tests: [fn([f64; 3]) -> f64; 4] =
                         [|_| 1.0, |o| o[0], |o| (3.0 * o[1]).sin(), |o| o[2] * o[2]];
-                    let expected = tests.map(|g| integrate(&water.lobe, i, n, 400, |o| g(o) * water.lobe.pdf(i, o, n)));
+                    let expected =
+                        tests.map(|g| integrate(&water.lobe, i, n, 400, |o| g(o) * water.lobe.pdf(i, o, n)));
                     let count = 40_000;
                     let (mut sum, mut square) = ([0.0; 4], [0.0; 4]);
                     for _ in 0..count {
@@ -42,7 +43,8 @@ fn draws_follow_the_density_about_any_normal() {
                     }
                     for k in 0..4 {
                         let mean = sum[k] / f64::from(count);
-                        let error = ((square[k] / f64::from(count) - mean * mean).max(0.0) / f64::from(count)).sqrt();
+                        let error =
+                            ((square[k] / f64::from(count) - mean * mean).max(0.0) / f64::from(count)).sqrt();
                         compared += 1;
                         assert!(
                             (mean - expected[k]).abs() < 4.5 * error + 2e-3,
@@ -76,7 +78,14 @@ fn a_draw_reports_its_density_and_value() {
         }
         let (i, n, u) = (i.map(|x| x as f32), n.map(|x| x as f32), u.map(|x| x as f32));
         let s = single.sample(i, n, u);
-        assert_eq!((s.pdf, s.f), if s.pdf > 0.0 { (single.pdf(i, s.direction, n), single.eval(i, s.direction, n)) } else { (0.0, 0.0) });
+        assert_eq!(
+            (s.pdf, s.f),
+            if s.pdf > 0.0 {
+                (single.pdf(i, s.direction, n), single.eval(i, s.direction, n))
+            } else {
+                (0.0, 0.0)
+            }
+        );
         assert!(s.pdf.is_finite() && s.f.is_finite());
     }
     assert!(drawn > 18_000);
@@ -107,7 +116,11 @@ fn weights_are_bounded() {
                 let mut worst = 0.0f64;
                 for _ in 0..60_000 {
                     // Half of the incidences within 6 degrees of grazing, down to 1e-3 degrees.
-                    let theta = if rng.random() { 90.0 * rng.random::<f64>() } else { 90.0 - 6.0 * 10f64.powf(-4.0 * rng.random::<f64>()) };
+                    let theta = if rng.random() {
+                        90.0 * rng.random::<f64>()
+                    } else {
+                        90.0 - 6.0 * 10f64.powf(-4.0 * rng.random::<f64>())
+                    };
                     let i = direction(theta, 360.0 * rng.random::<f64>());
                     let s = lobe.sample(i, UP, [rng.random(), rng.random(), rng.random()]);
                     if s.pdf > 0.0 {

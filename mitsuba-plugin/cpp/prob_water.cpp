@@ -1,0 +1,337 @@
+#include "compatible.h"
+
+#include <mitsuba/core/properties.h>
+#include <mitsuba/render/bsdf.h>
+#include <cmath>
+
+#include "prob-water-mitsuba/src/lib.rs.h"
+#include "rust/cxx.h"
+
+#include "lobe.h"
+
+// The hot path of the scalar variants: the Rust core, called as plain C.
+extern "C" {
+struct ProbWaterSample {
+    float direction[3];
+    float pdf;
+    float f;
+    bool whitecap;
+};
+float prob_water_bsdf_eval(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
+float prob_water_bsdf_pdf(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
+void prob_water_bsdf_sample(const prob_water::Water *, uint32_t parts, const float i[3], const float u[3],
+                            ProbWaterSample *sample);
+}
+
+NAMESPACE_BEGIN(mitsuba)
+
+/**!
+.. _bsdf-prob_water:
+
+Wind-roughened water (:monosp:`prob_water`)
+-------------------------------------------
+
+.. pluginparameters::
+
+ * - wind_speed
+   - |float|
+   - Wind speed in m/s at :monosp:`wind_height`; 0 is calm, 36 at 10 m the upper limit. (Default: 5)
+   - |exposed|
+
+ * - wind_height
+   - |float|
+   - Height in m at which the wind speed is measured, 0.1 to 100. (Default: 10)
+   - |exposed|
+
+ * - friction_velocity
+   - |float|
+   - Friction velocity in cm/s instead of the wind speed, 0 to 238.65.
+   - |exposed|
+
+ * - beaufort
+   - |int|
+   - Beaufort number instead of the wind speed, 0 to 12.
+   - |exposed|
+
+ * - wind_direction
+   - |float|
+   - Azimuth in degrees that the wind comes *from*, counter-clockwise from the shading frame's
+     s axis (dp_du). (Default: 0)
+   - |exposed|
+
+ * - footprint
+   - |float|
+   - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves. (Default: inf)
+   - |exposed|
+
+ * - surface
+   - |string|
+   - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives. (Default: flat)
+
+ * - wavelength
+   - |float|
+   - Wavelength in micrometres of the refractive index and the whitecaps, 0.2 to 200; spectral
+     variants use it for every wavelength. (Default: 0.55)
+   - |exposed|
+
+ * - ior
+   - |float|
+   - Refractive index, 1 to 10. (Default: Hale and Querry's at the wavelength, with sea salt)
+   - |exposed| (where given)
+
+ * - water
+   - |string|
+   - :monosp:`ocean` or :monosp:`fresh`. (Default: ocean)
+
+ * - fresnel
+   - |string|
+   - :monosp:`schlick`, as in the report, or :monosp:`exact`. (Default: schlick)
+
+ * - slope_measure
+   - |string|
+   - Slopes are Gaussian as tilt angles (:monosp:`angle`, as in the report) or as
+     :monosp:`slope`, Cox and Munk's measure. (Default: angle)
+
+ * - readings
+   - |string|
+   - :monosp:`corrected` or :monosp:`as_printed` equations. (Default: corrected)
+
+ * - whitecaps, shadowing, gram_charlier
+   - |bool|
+   - Whether whitecaps are blended in, the shadowing function and the skewness and kurtosis of
+     the slopes are applied. (Default: true)
+
+The sea as a renderer sees it from where single waves are not resolved: the water BRDF of the report
+AFRL-RH-FS-TR-2023-0002, facets with Cox and Munk's slopes, whitecaps between them. One-sided, black
+from below. It has two components: 0 the facets (glossy), 1 the whitecaps (diffuse), if there are any.
+
+.. tabs::
+    .. code-tab:: xml
+        :name: prob-water
+
+        <bsdf type="prob_water">
+            <float name="wind_speed" value="7"/>
+            <float name="wind_direction" value="90"/>
+        </bsdf>
+
+    .. code-tab:: python
+
+        'type': 'prob_water',
+        'wind_speed': 7,
+        'wind_direction': 90
+
+*/
+template <typename Float, typename Spectrum>
+class ProbWater final : public BSDF<Float, Spectrum> {
+public:
+    MI_IMPORT_BASE(BSDF, m_flags, m_components)
+    MI_IMPORT_TYPES()
+
+    using Lobe = prob_water::Lobe<Float>;
+    using Parts = prob_water::Parts;
+
+    ProbWater(const Properties &props)
+        : Base(props), m_options(prob_water::options()), m_water(m_options->configure()) {
+        for (const rust::String &name : prob_water::vocabulary()) {
+            std::string key(name);
+            if (props.has_property(key))
+                set(key, props);
+        }
+        refuse([&] { m_water = m_options->configure(); });
+        for (const char *name : Exposed)
+            if (!std::isnan(m_water->number(name)))
+                m_exposed.emplace_back(name, 0.f);
+        apply();
+    }
+
+    void traverse(TraversalCallback *cb) override {
+        for (auto &[name, value] : m_exposed)
+            cb->put(name, value, ParamFlags::NonDifferentiable);
+    }
+
+    void parameters_changed(const std::vector<std::string> & /*keys*/) override {
+        try {
+            refuse([&] {
+                for (auto &[name, value] : m_exposed)
+                    if (value != (ScalarFloat) m_water->number(name))
+                        m_options->set_number(name, value);
+                m_water = m_options->configure();
+            });
+        } catch (...) {
+            // A refused value leaves the sea as it was.
+            for (auto &[name, value] : m_exposed)
+                m_options->set_number(name, m_water->number(name));
+            apply();
+            throw;
+        }
+        apply();
+    }
+
+    std::pair<BSDFSample3f, Spectrum> sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, Float sample1,
+                                             const Point2f &sample2, Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
+
+        BSDFSample3f bs = dr::zeros<BSDFSample3f>();
+        Parts parts = enabled(ctx);
+        active &= Frame3f::cos_theta(si.wi) > 0.f;
+        if (unlikely(parts.none() || dr::none_or<false>(active)))
+            return { bs, 0.f };
+
+        Float weight;
+        Mask whitecap;
+        if constexpr (dr::is_jit_v<Float>) {
+            std::tie(bs.wo, whitecap) = m_lobe.sample(si.wi, sample1, sample2, parts);
+            auto g = m_lobe.geometry(si.wi, bs.wo);
+            bs.pdf = m_lobe.pdf(g, si.wi, parts);
+            active &= bs.pdf > 0.f;
+            weight = m_lobe.eval(g, si.wi, bs.wo, parts) / bs.pdf;
+        } else {
+            float u[3] = { sample1, sample2.x(), sample2.y() };
+            ProbWaterSample s;
+            prob_water_bsdf_sample(&*m_water, parts.bits(), si.wi.data(), u, &s);
+            bs.wo = Vector3f(s.direction[0], s.direction[1], s.direction[2]);
+            bs.pdf = s.pdf;
+            whitecap = s.whitecap;
+            active &= s.pdf > 0.f;
+            weight = s.f * s.direction[2] / s.pdf;
+        }
+        bs.eta = 1.f;
+        bs.sampled_component = dr::select(whitecap, UInt32(1), UInt32(0));
+        bs.sampled_type = dr::select(whitecap, UInt32(+BSDFFlags::DiffuseReflection),
+                                     UInt32(+BSDFFlags::GlossyReflection));
+        dr::masked(bs, !active) = dr::zeros<BSDFSample3f>();
+        return { bs, spectrum(weight) & active };
+    }
+
+    Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
+                  Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
+
+        Parts parts = enabled(ctx);
+        if (unlikely(parts.none() || dr::none_or<false>(active)))
+            return 0.f;
+        if constexpr (dr::is_jit_v<Float>)
+            return spectrum(m_lobe.eval(m_lobe.geometry(si.wi, wo), si.wi, wo, parts)) & active;
+        else
+            return spectrum(prob_water_bsdf_eval(&*m_water, parts.bits(), si.wi.data(), wo.data())) & active;
+    }
+
+    Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
+              Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
+
+        Parts parts = enabled(ctx);
+        if (unlikely(parts.none() || dr::none_or<false>(active)))
+            return 0.f;
+        if constexpr (dr::is_jit_v<Float>)
+            return dr::select(active, m_lobe.pdf(m_lobe.geometry(si.wi, wo), si.wi, parts), 0.f);
+        else
+            return active ? prob_water_bsdf_pdf(&*m_water, parts.bits(), si.wi.data(), wo.data()) : 0.f;
+    }
+
+    std::pair<Spectrum, Float> eval_pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
+                                        Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
+
+        if constexpr (dr::is_jit_v<Float>) {
+            Parts parts = enabled(ctx);
+            if (parts.none())
+                return { 0.f, 0.f };
+            auto g = m_lobe.geometry(si.wi, wo);
+            return { spectrum(m_lobe.eval(g, si.wi, wo, parts)) & active,
+                     dr::select(active, m_lobe.pdf(g, si.wi, parts), 0.f) };
+        } else {
+            return { eval(ctx, si, wo, active), pdf(ctx, si, wo, active) };
+        }
+    }
+
+    Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f & /*si*/, Mask active) const override {
+        return spectrum(Float(m_whitecap_albedo)) & active;
+    }
+
+    std::string to_string() const override {
+        return "ProbWater[\n  " + string::indent(std::string(m_water->describe()), 2) + "\n]";
+    }
+
+    MI_DECLARE_CLASS(ProbWater)
+
+private:
+    /// Numbers that traverse() exposes, where they are set.
+    static constexpr const char *Exposed[] = { "wind_speed", "wind_height", "friction_velocity", "beaufort",
+                                               "wind_direction", "footprint", "wavelength", "ior" };
+
+    static Spectrum spectrum(const Float &value) {
+        return depolarizer<Spectrum>(UnpolarizedSpectrum(value));
+    }
+
+    /// Runs a call into the core; its errors become Mitsuba's.
+    template <typename Call> static void refuse(Call call) {
+        try {
+            call();
+        } catch (const rust::Error &e) {
+            Throw("prob_water: %s", e.what());
+        }
+    }
+
+    void set(const std::string &name, const Properties &props) {
+        refuse([&] {
+            switch (props.type(name)) {
+                case Properties::Type::Bool:
+                    m_options->set_flag(name, props.get<bool>(name));
+                    break;
+                case Properties::Type::Integer:
+                    m_options->set_number(name, (double) props.get<int64_t>(name));
+                    break;
+                case Properties::Type::Float:
+                    m_options->set_number(name, props.get<double>(name));
+                    break;
+                case Properties::Type::String:
+                    m_options->set_text(name, std::string(props.get<std::string_view>(name)));
+                    break;
+                default:
+                    Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
+            }
+        });
+    }
+
+    /// Takes over what the configured sea says.
+    void apply() {
+        for (auto &[name, value] : m_exposed)
+            value = (ScalarFloat) m_water->number(name);
+
+        prob_water::Coefficients c = m_water->coefficients();
+        m_whitecaps = c.whitecap_fraction > 0.f;
+        m_whitecap_albedo = c.whitecap_fraction * c.whitecap_brdf * dr::Pi<ScalarFloat>;
+        if constexpr (dr::is_jit_v<Float>)
+            m_lobe = Lobe(c);
+
+        m_components.clear();
+        m_components.push_back(BSDFFlags::GlossyReflection | BSDFFlags::Anisotropic | BSDFFlags::FrontSide);
+        m_flags = m_components[0];
+        if (m_whitecaps) {
+            m_components.push_back(BSDFFlags::DiffuseReflection | BSDFFlags::FrontSide);
+            m_flags = m_flags | m_components[1];
+        }
+    }
+
+    Parts enabled(const BSDFContext &ctx) const {
+        return { ctx.is_enabled(BSDFFlags::GlossyReflection, 0),
+                 m_whitecaps && ctx.is_enabled(BSDFFlags::DiffuseReflection, 1) };
+    }
+
+    rust::Box<prob_water::Options> m_options;
+    rust::Box<prob_water::Water> m_water;
+    std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
+    bool m_whitecaps = false;
+    ScalarFloat m_whitecap_albedo = 0.f;
+    Lobe m_lobe;
+
+    MI_TRAVERSE_CB(Base, m_lobe)
+};
+
+extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn fn) {
+    prob_water::check_compatible();
+    MI_REGISTER_PLUGIN(fn, name, ProbWater);
+}
+
+NAMESPACE_END(mitsuba)
