@@ -199,7 +199,6 @@ public:
         bs.sampled_component = dr::select(whitecap, UInt32(1), UInt32(0));
         bs.sampled_type = dr::select(whitecap, UInt32(+BSDFFlags::DiffuseReflection),
                                      UInt32(+BSDFFlags::GlossyReflection));
-        dr::masked(bs, !active) = dr::zeros<BSDFSample3f>();
         return { bs, spectrum(weight) & active };
     }
 

@@ -1,7 +1,7 @@
 //! What the Mitsuba shim calls: configuration and errors over a cxx bridge, the hot path as plain C functions.
 
 use prob_water::brdf::{Parts, up};
-use prob_water::real::{IERFC, IERFC_END, IERFC_SCALE};
+use prob_water::real::IERFC;
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
 use prob_water::{Error, Lobe, Sample};
 
@@ -33,9 +33,7 @@ mod ffi {
         shadowing: bool,
         bounded: bool,
         as_printed: bool,
-        ierfc: [f32; 7],
-        ierfc_scale: f32,
-        ierfc_end: f32,
+        ierfc: [f32; 6],
     }
 
     extern "Rust" {
@@ -123,8 +121,6 @@ impl Water {
             bounded: f.bounded,
             as_printed: f.as_printed,
             ierfc: IERFC,
-            ierfc_scale: IERFC_SCALE,
-            ierfc_end: IERFC_END,
         }
     }
 

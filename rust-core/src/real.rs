@@ -121,15 +121,11 @@ impl Real for f64 {
     }
 }
 
-/// `ierfc(x) exp(x^2)` as a polynomial in `1/(1 + IERFC_SCALE x)`, constant term first: minimax
-/// on [0, [`IERFC_END`]] for the error relative to `x + ierfc(x)/2`, which is what the shadowing
-/// function passes on (3e-8; 1.2e-6 evaluated in float32). The Dr.Jit twin reads the same numbers.
-pub const IERFC: [f32; 7] =
-    [0.008_989_995, -0.043_938_935, 0.050_629_68, 0.511_808_2, -0.960_971_3, 1.353_942_1, -0.356_270_16];
-/// Scale of the argument of [`IERFC`].
-pub const IERFC_SCALE: f32 = 0.42;
-/// Beyond this argument ierfc is below 4e-10 and held constant.
-pub const IERFC_END: f32 = 4.2;
+/// Coefficients b of `ierfc(x) = 1/sqrt(pi)/(1 + b_1 x + ... + b_6 x^6)^8`, minimax for the error
+/// relative to `x + ierfc(x)/2`, which is what the shadowing function passes on: 6e-7, and 2e-6
+/// evaluated in float32. No exponential is needed. The Dr.Jit twin reads the same numbers.
+pub const IERFC: [f32; 6] =
+    [0.221_553_92, 0.095_949_285, 0.027_744_243, 0.006_592_863, 0.000_360_042_88, 0.000_746_173_96];
 
 impl Real for f32 {
     type Mask = bool;
@@ -141,9 +137,9 @@ impl Real for f32 {
         x as f32
     }
     fn ierfc(self) -> Self {
-        let x = Real::min(self, IERFC_END);
-        let t = 1.0 / (1.0 + IERFC_SCALE * x);
-        (-x * x).exp() * IERFC.iter().rev().fold(0.0, |sum, c| sum * t + c)
+        let p = IERFC.iter().rev().fold(0.0, |sum, b| (sum + b) * self) + 1.0;
+        let p4 = (p * p) * (p * p);
+        0.564_189_6 / (p4 * p4)
     }
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self, e: Self, f: Self) -> Self {
         let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(f64::from);
@@ -168,7 +164,7 @@ mod tests {
         for i in 0..=6000 {
             let x = f64::from(i) * 1e-3;
             let error = (f64::from((x as f32).ierfc()) - x.ierfc()).abs() / (x + x.ierfc() / 2.0);
-            assert!(error < 2e-6, "x = {x}: {error}");
+            assert!(error < 2.5e-6, "x = {x}: {error}");
         }
     }
 
