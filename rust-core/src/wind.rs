@@ -96,24 +96,34 @@ pub fn friction_velocity(speed: f64, height: f64) -> Option<f64> {
     if speed == 0.0 {
         return Some(0.0);
     }
-    // Table 1 ends at 36 m/s *and* 238.65 cm/s, equal to the printed digits: allow both.
-    let end = invert(WIND_SPEED_END, 10.0, 2.0 * FRICTION_VELOCITY_END)?.max(FRICTION_VELOCITY_END);
-    invert(speed, height, end)
+    if !(speed > 0.0 && speed <= highest_wind_speed(height)) {
+        return None;
+    }
+    Some(bisect(calm_end(height), rising_end(height), |w| wind_speed(w, height) >= speed))
 }
 
-/// Smallest friction velocity up to `end` with the given wind speed.
-fn invert(speed: f64, height: f64, end: f64) -> Option<f64> {
-    // Close to the water Eq. 1 falls again at high wind: the root lies before its maximum.
+/// The wind speed in m/s at a height in m with which Table 1 ends: 36 m/s at 10 m.
+pub fn highest_wind_speed(height: f64) -> f64 {
+    wind_speed(rising_end(height), height)
+}
+
+/// A friction velocity at which Eq. 1 is not yet positive.
+fn calm_end(height: f64) -> f64 {
+    0.5 * 0.684 / (100.0 * height + 0.0443)
+}
+
+/// The friction velocity up to which the wind speed rises, at most the end of Table 1: close to the
+/// water Eq. 1 falls again at high wind, and the root lies before its maximum.
+fn rising_end(height: f64) -> f64 {
     let slope = |w: f64| {
         let h0 = roughness_height(w);
         (100.0 * height / h0).ln() - (8.56e-5 * w * w - 0.684 / w) / h0
     };
-    let calm = 0.684 / (100.0 * height + 0.0443) * 0.5;
-    let top = if slope(end) < 0.0 { bisect(calm, end, |w| slope(w) < 0.0) } else { end };
-    if !(speed >= 0.0 && speed <= wind_speed(top, height)) {
-        return None;
-    }
-    Some(bisect(calm, top, |w| wind_speed(w, height) >= speed))
+    // 36 m/s and 238.65 cm/s are the same to the printed digits: the larger one is the end.
+    let end = bisect(FRICTION_VELOCITY_END - 0.01, FRICTION_VELOCITY_END + 0.01, |w| {
+        wind_speed(w, 10.0) >= WIND_SPEED_END
+    });
+    if slope(end) < 0.0 { bisect(calm_end(height), end, |w| slope(w) < 0.0) } else { end }
 }
 
 /// First number at which `beyond` holds, between `low` where it does not and `high` where it does.
@@ -141,7 +151,8 @@ impl Wind {
                 match friction_velocity(speed, height) {
                     Some(w) => w,
                     None => {
-                        let allowed = format!("0 to the end of Table 1 (36 m/s at 10 m), at {height} m");
+                        let end = highest_wind_speed(height);
+                        let allowed = format!("0 to {end:.2} m/s at {height} m, the end of Table 1");
                         return refuse("wind_speed", speed, allowed);
                     }
                 }

@@ -54,11 +54,21 @@ pub fn header(check: bool) -> Result<()> {
     Ok(())
 }
 
-/// Compiles each C program against the header and the static library, and runs it.
+/// Compiles each C program against the header and the static library, and runs it. The shared library made beside it is
+/// what the Python tests call.
 pub fn c_test() -> Result<()> {
     let rust = cargo::static_library(
         "rust-core",
-        &["rustc", "-p", "prob-water", "--release", "--features", "c-api", "--crate-type", "staticlib"],
+        &[
+            "rustc",
+            "-p",
+            "prob-water",
+            "--release",
+            "--features",
+            "c-api",
+            "--crate-type",
+            "staticlib,cdylib",
+        ],
     )?;
     let programs = util::files_with_extension(&util::root().join(PROGRAMS), "c")?;
     if programs.is_empty() {

@@ -76,7 +76,7 @@ int main(void) {
     check(prob_water_options_set(options, "beaufort", "4") == PROB_WATER_STATUS_PARAMETER, "two winds");
 
     refuses("friction_velocity", "-1");
-    refuses("wind_speed", "nan");
+    refuses("wind_speed", "NaN");
     refuses("wind_speed", "40");
     refuses("footprint", "0");
     refuses("footprint", "-2");

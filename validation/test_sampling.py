@@ -1,0 +1,123 @@
+"""`sample` of the plugin against `pdf`: Mitsuba's chi-square test, and bounded weights."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from core import Core, direction
+from test_lanes import draw
+
+INCIDENCES = (0.0, 30.0, 60.0, 75.0, 85.0)
+CONFIGURATIONS = [
+    *({"friction_velocity": w, "wind_direction": 35.0} for w in (0.0, 2.0, 8.0, 24.0, 56.0, 97.0)),
+    {"friction_velocity": 8.0, "slope_measure": "slope", "gram_charlier": False},
+    {"friction_velocity": 24.0, "slope_measure": "slope", "footprint": 0.15},
+    {"friction_velocity": 97.0, "whitecaps": False},
+]
+
+
+class TiltDomain:
+    """The sphere of directions, with the upper half as tilts of the half vector along and across the wind
+    in standard deviations: the lobe fills it however narrow it is. Tilts t are folded to
+    tanh(t/3), so that (-1, 1)^2 holds every direction above the horizon that a facet reflects to."""
+
+    def __init__(self, mi, i, core, wind_direction):
+        import drjit as dr
+
+        self.mi, self.dr = mi, dr
+        self.i = mi.Vector3f([float(x) for x in i])
+        self.sigma = [3 * np.sqrt(core.sigma_u2), 3 * np.sqrt(core.sigma_c2)]
+        w = np.radians(wind_direction)
+        self.cos, self.sin = float(np.cos(w)), float(np.sin(w))
+
+    def bounds(self):
+        return self.mi.ScalarBoundingBox2f([-1, -1], [1, 1])
+
+    def aspect(self):
+        return 1.0
+
+    def map_forward(self, p):
+        mi, dr = self.mi, self.dr
+        t = [dr.atanh(dr.clip(p[k], -0.9999, 0.9999)) * self.sigma[k] for k in range(2)]
+        h = dr.normalize(mi.Vector3f(t[0] * self.cos - t[1] * self.sin, t[0] * self.sin + t[1] * self.cos, 1))
+        return 2 * dr.dot(self.i, h) * h - self.i
+
+    def map_backward(self, o):
+        mi, dr = self.mi, self.dr
+        h = self.i + o
+        t = [(h.x * self.cos + h.y * self.sin) / h.z, (h.y * self.cos - h.x * self.sin) / h.z]
+        return mi.Point2f(*(dr.tanh(t[k] / self.sigma[k]) for k in range(2)))
+
+    def jacobian(self, o):
+        """d omega_o/d p."""
+        dr = self.dr
+        p, h = self.map_backward(o), dr.normalize(self.i + o)
+        scale = [self.sigma[k] / dr.maximum(1 - p[k] * p[k], 1e-8) for k in range(2)]
+        return 4 * dr.dot(self.i, h) * h.z**3 * scale[0] * scale[1]
+
+
+@pytest.mark.parametrize("parameters", CONFIGURATIONS, ids=lambda p: "-".join(map(str, p.values())))
+@pytest.mark.parametrize("incidence", INCIDENCES)
+def test_chi_square(use, parameters, incidence):
+    """45 configurations, calm to gale, incidence 0 to 85 degrees: of the facets' lobe in tilts, so that calm
+    water is resolved as well."""
+    mi = use("llvm_ad_rgb")
+    import drjit as dr
+    from mitsuba.chi2 import ChiSquareTest
+
+    i = direction(incidence, 70.0)
+    domain = TiltDomain(mi, i, Core(**parameters), parameters.get("wind_direction", 0.0))
+    bsdf = mi.load_dict({"type": "prob_water", **parameters})
+    context = mi.BSDFContext()
+
+    def interaction(count):
+        si = dr.zeros(mi.SurfaceInteraction3f, count)
+        si.wi = mi.Vector3f([float(x) for x in i])
+        si.sh_frame = mi.Frame3f([1, 0, 0], [0, 1, 0], [0, 0, 1])
+        return si
+
+    def sample(u):
+        drawn, _ = bsdf.sample(context, interaction(dr.width(u)), u[0], mi.Point2f(u[1], u[2]))
+        return drawn.wo, dr.select(drawn.pdf > 0, mi.Float(1), 0)
+
+    def pdf(o):
+        return bsdf.pdf(context, interaction(dr.width(o)), o) * domain.jacobian(o)
+
+    test = ChiSquareTest(domain, sample, pdf, sample_dim=3, sample_count=1_000_000, res=101, ires=8)
+    assert test.run(0.01, test_count=len(CONFIGURATIONS) * len(INCIDENCES), quiet=True), test.messages
+
+
+@pytest.mark.parametrize("component", [-1, 0, 1])
+def test_chi_square_on_the_sphere(use, component):
+    """The same over all directions, for the whole BRDF and for each of its components."""
+    mi = use("llvm_ad_rgb")
+    from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+
+    context = mi.BSDFContext()
+    context.component = component & 0xFFFFFFFF
+    extra = '<float name="friction_velocity" value="97"/>'
+    sample, pdf = BSDFAdapter("prob_water", extra, wi=direction(50.0, 20.0).tolist(), ctx=context)
+    test = ChiSquareTest(SphericalDomain(), sample, pdf, sample_dim=3, sample_count=1_000_000)
+    assert test.run(0.01, test_count=3, quiet=True), test.messages
+
+
+def test_weights_are_bounded(use, full):
+    """No fireflies at any angle or wind: the bounds of docs/model.md, in float32."""
+    mi, rng = use("llvm_ad_rgb"), np.random.default_rng(8)
+    count = 4_000_000 if full else 400_000
+    theta = np.where(rng.random(count) < 0.5, rng.uniform(0, 90, count), 90 - 6 * 10.0 ** rng.uniform(-4, 0, count))
+    i = direction(theta, rng.uniform(0, 360, count)).astype(np.float32)
+    u = rng.uniform(0, 1, (count, 3)).astype(np.float32)
+    print()
+    for wind, measure, gram_charlier in itertools.product(
+        (0.0, 0.5, 2.0, 8.0, 24.0, 62.9, 97.0, 150.0, 238.65), ("slope", "angle"), (False, True)
+    ):
+        parameters = {"friction_velocity": wind, "slope_measure": measure, "gram_charlier": gram_charlier}
+        _, weight = draw(mi, mi.load_dict({"type": "prob_water", **parameters, "whitecaps": False}), i, u)
+        _, mixed = draw(mi, mi.load_dict({"type": "prob_water", **parameters}), i, u)
+        bound = {("slope", False): 1.23, ("slope", True): 2.1}.get((measure, gram_charlier))
+        if bound is None:
+            bound = (2.6 if gram_charlier else 1.5) if wind <= 63 else (20.0 if gram_charlier else 4.0)
+        print(f"w* {wind:6.2f} {measure} Gram-Charlier {gram_charlier}: {weight.max():.3f}, with whitecaps {mixed.max():.3f}, bound {bound}")
+        assert weight.max() < bound and mixed.max() < bound
