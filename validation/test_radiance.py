@@ -48,7 +48,7 @@ def radiance(mi, scene, o, samples=1):
         view = mi.Vector3f(np.ascontiguousarray(rays.T))
         ray = mi.RayDifferential3f(mi.Ray3f(mi.Point3f(10.0 * view), -view))
         if mi.is_spectral:
-            ray.wavelengths = mi.Color4f(450.0, 550.0, 600.0, 700.0)
+            ray.wavelengths = [450.0, 550.0, 600.0, 700.0]
         value, valid, _ = integrator.sample(scene, sampler, ray)
         value = np.array(value)
         assert np.array(valid).all()
@@ -58,7 +58,7 @@ def radiance(mi, scene, o, samples=1):
         for view in np.repeat(o, samples, axis=0).tolist():
             ray = mi.RayDifferential3f(mi.Ray3f(mi.Point3f([10 * x for x in view]), mi.Vector3f([-x for x in view])))
             if mi.is_spectral:
-                ray.wavelengths = mi.Color4f(450.0, 550.0, 600.0, 700.0)
+                ray.wavelengths = [450.0, 550.0, 600.0, 700.0]
             rows.append(np.array(integrator.sample(scene, sampler, ray)[0]).ravel())
         value = np.array(rows).T
     # Water is grey: every channel or wavelength carries the same value.

@@ -23,14 +23,20 @@ template <typename Float_> struct Lobe {
     using Vector3f = mitsuba::Vector<Float, 3>;
     using Point2f = mitsuba::Point<Float, 2>;
 
-    /// The smallest normal number: keeps quotients finite.
-    static constexpr float Tiny = 1.17549435e-38f;
+    /// Tilts have digits to spare, whose rounding errors the Gaussian and the Gram-Charlier polynomial
+    /// magnify a thousandfold; not on GPUs, most of which are slow in double precision.
+    using Wide = std::conditional_t<drjit::is_cuda_v<Float>, Float, drjit::float64_array_t<Float>>;
+    using WideScalar = drjit::scalar_t<Wide>;
+
+    /// The smallest normal number, and one whose fourth power is normal: keep quotients finite.
+    static constexpr float Tiny = 1.17549435e-38f, Small = 1e-9f;
     static constexpr float Largest = 3.40282347e+38f;
     /// As in the core's sampling.rs.
     static constexpr float WhitecapAlbedo = 0.22f, FacetAlbedoFloor = 0.01f, Grazing = 1e-12f;
 
     /// Numbers are data, so that a change does not compile new kernels; decisions are made while tracing.
-    Float cos_wind, sin_wind, sigma_u, sigma_c, inv_sigma_u, inv_sigma_c, scale, c21, c03, steep_cos, steep_bound, sigma_shadow,
+    Wide cos_wind, sin_wind, inv_sigma_u, inv_sigma_c;
+    Float sigma_u, sigma_c, scale, c21, c03, steep_cos, steep_bound, sigma_shadow,
         bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance, ior2, whitecap_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
@@ -42,12 +48,13 @@ template <typename Float_> struct Lobe {
         for (int k = 0; k < 6; ++k)
             ierfc[k] = c.ierfc[k];
         auto data = [](float x) { return drjit::opaque<Float>(x); };
-        cos_wind = data(c.cos_wind);
-        sin_wind = data(c.sin_wind);
-        sigma_u = data(c.sigma_u);
-        sigma_c = data(c.sigma_c);
-        inv_sigma_u = data(1.f / c.sigma_u);
-        inv_sigma_c = data(1.f / c.sigma_c);
+        auto wide = [](double x) { return drjit::opaque<Wide>((WideScalar) x); };
+        cos_wind = wide(c.cos_wind);
+        sin_wind = wide(c.sin_wind);
+        inv_sigma_u = wide(1. / c.sigma_u);
+        inv_sigma_c = wide(1. / c.sigma_c);
+        sigma_u = data((float) c.sigma_u);
+        sigma_c = data((float) c.sigma_c);
         scale = data(c.scale);
         c21 = data(c.c21);
         c03 = data(c.c03);
@@ -70,36 +77,51 @@ template <typename Float_> struct Lobe {
                  steep_cos, steep_bound, sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u,
                  inv_proposal_c, proposal_norm, normal_reflectance, ior2, whitecap_fraction, whitecap_brdf)
 
-    /// What the two directions fix.
-    struct Geometry {
-        Float cos_i, cos_o, cos_zeta, cos_xi;
-        /// Horizontal components of the half vector along and across the wind, and their scale to slopes.
-        Float half_u, half_c, inv_half_z;
+    /// What the two directions fix, with tilts in numbers of type T.
+    template <typename T> struct Geometry {
+        Float cos_i, cos_o, cos_zeta;
+        /// 1/cos^2 xi, and the two factors that would make it up were the axes apart: 1 + slope^2.
+        Float inv_cos2_xi, stretch_u, stretch_c;
+        /// Slopes of the half vector along and across the wind.
+        Float slope_u, slope_c;
         /// Tilts in the density's measure.
-        Float tilt_u, tilt_c;
+        T tilt_u, tilt_c;
         Mask lit;
     };
 
-    Geometry geometry(const Vector3f &i, const Vector3f &o) const {
+    template <typename T = Wide> Geometry<T> geometry(const Vector3f &i, const Vector3f &o) const {
         namespace dr = drjit;
-        Geometry g;
+        Geometry<T> g;
         g.cos_i = i.z();
         g.cos_o = o.z();
         g.lit = g.cos_i > 0.f && g.cos_o > 0.f;
-        Vector3f h = i + o;
-        Float length2 = dr::maximum(dr::squared_norm(h), Tiny), inv_length = dr::rsqrt(length2),
-              hz = dr::maximum(h.z(), Tiny);
-        g.cos_zeta = dr::minimum(.5f * length2 * inv_length, 1.f);
-        g.cos_xi = hz * inv_length;
-        std::tie(g.half_u, g.half_c) = wind_frame(h.x(), h.y());
-        g.inv_half_z = dr::rcp(hz);
-        g.tilt_u = slope_measure ? Float(g.half_u * g.inv_half_z) : angle(g.half_u, hz);
-        g.tilt_c = slope_measure ? Float(g.half_c * g.inv_half_z) : angle(g.half_c, hz);
+        g.cos_zeta = dr::minimum(.5f * dr::norm(i + o), 1.f);
+
+        T z = dr::maximum(T(i.z()) + T(o.z()), dr::scalar_t<T>(Small));
+        auto [u, c] = wind_frame(T(i.x()) + T(o.x()), T(i.y()) + T(o.y()));
+        Float hz(z);
+        Float inv_hz = dr::rcp(hz);
+        if (slope_measure) {
+            g.tilt_u = quotient(u, z, inv_hz);
+            g.tilt_c = quotient(c, z, inv_hz);
+        } else {
+            // Both quotients of min and max by one reciprocal.
+            T abs_u = dr::abs(u), abs_c = dr::abs(c), most_u = dr::maximum(abs_u, z), most_c = dr::maximum(abs_c, z);
+            Float m_u(most_u), m_c(most_c), inv = dr::rcp(m_u * m_c);
+            g.tilt_u = angle(u, z, abs_u, most_u, Float(inv * m_c));
+            g.tilt_c = angle(c, z, abs_c, most_c, Float(inv * m_u));
+        }
+        g.slope_u = Float(u) * inv_hz;
+        g.slope_c = Float(c) * inv_hz;
+        Float u2 = dr::square(g.slope_u), c2 = dr::square(g.slope_c);
+        g.stretch_u = 1.f + u2;
+        g.stretch_c = 1.f + c2;
+        g.inv_cos2_xi = 1.f + u2 + c2;
         return g;
     }
 
     /// f cos(theta_o), Eqs. 55-79, of some of its parts, each with its share of the surface.
-    Float eval(const Geometry &g, const Vector3f &i, const Vector3f &o, Parts parts) const {
+    template <typename T> Float eval(const Geometry<T> &g, const Vector3f &i, const Vector3f &o, Parts parts) const {
         namespace dr = drjit;
         Float f = 0.f;
         if (parts.facets) {
@@ -115,23 +137,22 @@ template <typename Float_> struct Lobe {
     }
 
     /// Density, 1/sr, with which sample() draws o.
-    Float pdf(const Geometry &g, const Vector3f &i, Parts parts) const {
+    template <typename T> Float pdf(const Geometry<T> &g, const Vector3f &i, Parts parts) const {
         namespace dr = drjit;
         if (!parts.facets)
             return dr::select(g.lit, g.cos_o * dr::InvPi<float>, 0.f);
         Proposal p = proposal(i);
-        Float z_u = g.tilt_u * inv_proposal_u, z_c = g.tilt_c * inv_proposal_c,
+        Float z_u = Float(g.tilt_u) * inv_proposal_u, z_c = Float(g.tilt_c) * inv_proposal_c,
               towards = dr::fmadd(z_u, p.u, z_c * p.c),
-              shown = dr::square(g.cos_zeta) * 2.f * g.inv_half_z * p.inv_cos,
-              shape = dr::minimum(shown, 2.f) + dr::select(towards > 1.f, towards, 0.f),
+              shown = dr::maximum(1.f + dr::fmadd(g.slope_u, p.i_u, g.slope_c * p.i_c) * p.inv_cos, Small),
+              inv_shown = dr::rcp(shown),
+              shape = dr::minimum(2.f * inv_shown, 1.f) + dr::select(towards > 1.f, towards * inv_shown, 0.f),
               gauss = dr::exp(-.5f * dr::fmadd(z_u, z_u, z_c * z_c)),
-              jacobian = g.cos_xi * dr::square(g.cos_xi) * g.cos_zeta;
-        if (!slope_measure) {
-            Float inv2 = dr::square(g.inv_half_z);
-            jacobian *= dr::fmadd(dr::square(g.half_u), inv2, 1.f) * dr::fmadd(dr::square(g.half_c), inv2, 1.f);
-        }
-        Float pdf = gauss * shape / dr::maximum(proposal_norm * (1.f + p.tail) * jacobian, Tiny);
-        pdf = dr::minimum(pdf, Largest);
+              norm = proposal_norm * (1.f + p.tail),
+              pdf = gauss * shape * dr::square(g.inv_cos2_xi) * p.inv_cos;
+        if (!slope_measure)
+            norm *= g.stretch_u * g.stretch_c;
+        pdf = dr::minimum(pdf / norm, Largest);
         if (parts.whitecaps) {
             auto [facets, all] = albedos(g.cos_i);
             Float share = facets / all;
@@ -187,15 +208,15 @@ template <typename Float_> struct Lobe {
         }
 
         // The tilt or its opposite, in proportion to what they show the source.
-        auto [i_u, i_c] = wind_frame(i.x(), i.y());
-        Float x = dr::fmadd(t_u, i_u, t_c * i_c), level_area = z * i.z(),
+        Float x = dr::fmadd(t_u, p.i_u, t_c * p.i_c), level_area = z * i.z(),
               a = dr::maximum(level_area + x, 0.f), b = dr::maximum(level_area - x, 0.f);
         Mask turn = !in_tail && rest * (a + b) < b;
         Float length = dr::rsqrt(dr::fmadd(z, z, dr::fmadd(t_u, t_u, t_c * t_c))),
               turned = dr::select(turn, -length, length);
         t_u *= turned;
         t_c *= turned;
-        Vector3f h(dr::fmsub(t_u, cos_wind, t_c * sin_wind), dr::fmadd(t_u, sin_wind, t_c * cos_wind), z * length);
+        Float cos_w(cos_wind), sin_w(sin_wind);
+        Vector3f h(dr::fmsub(t_u, cos_w, t_c * sin_w), dr::fmadd(t_u, sin_w, t_c * cos_w), z * length);
         Vector3f o = dr::fmsub(Vector3f(2.f * dr::dot(i, h)), h, i);
         o = dr::select(valid, o, 0.f);
         if (parts.whitecaps)
@@ -204,18 +225,19 @@ template <typename Float_> struct Lobe {
     }
 
 private:
-    /// What the source fixes of the facets' proposal: components of z that make rD, 1/D, D phi(1/D).
+    /// What the source fixes of the facets' proposal: its horizontal components, components of z that make rD,
+    /// 1/cos theta_i, 1/D, D phi(1/D).
     struct Proposal {
-        Float u, c, inv_cos, inv_d, tail;
+        Float i_u, i_c, u, c, inv_cos, inv_d, tail;
     };
 
     Proposal proposal(const Vector3f &i) const {
         namespace dr = drjit;
-        auto [u, c] = wind_frame(i.x(), i.y());
         Proposal p;
+        std::tie(p.i_u, p.i_c) = wind_frame(i.x(), i.y());
         p.inv_cos = dr::rcp(dr::maximum(i.z(), Grazing));
-        p.u = u * proposal_u * p.inv_cos;
-        p.c = c * proposal_c * p.inv_cos;
+        p.u = p.i_u * proposal_u * p.inv_cos;
+        p.c = p.i_c * proposal_c * p.inv_cos;
         Float d2 = dr::maximum(dr::fmadd(p.u, p.u, p.c * p.c), Tiny);
         p.inv_d = dr::rsqrt(d2);
         p.tail = d2 * p.inv_d * dr::exp(-.5f * p.inv_d * p.inv_d) * 0.3989422804f;
@@ -234,44 +256,61 @@ private:
     }
 
     /// Components along W_u and W_c (Eq. 68).
-    std::pair<Float, Float> wind_frame(const Float &x, const Float &y) const {
+    template <typename T> std::pair<T, T> wind_frame(const T &x, const T &y) const {
         namespace dr = drjit;
-        return { dr::fmadd(x, cos_wind, y * sin_wind), dr::fmsub(y, cos_wind, x * sin_wind) };
+        T cos(cos_wind), sin(sin_wind);
+        return { dr::fmadd(x, cos, y * sin), dr::fmsub(y, cos, x * sin) };
     }
 
     /// f_SW, Eq. 56.
-    Float facets(const Geometry &g, const Vector3f &i, const Vector3f &o) const {
+    template <typename T> Float facets(const Geometry<T> &g, const Vector3f &i, const Vector3f &o) const {
         namespace dr = drjit;
         // p (Eqs. 72-73, 78-79) and cos^4 xi.
-        Float u = dr::clip(-g.tilt_u * inv_sigma_u, -1e3f, 1e3f), c = dr::clip(g.tilt_c * inv_sigma_c, -1e3f, 1e3f);
+        using S = dr::scalar_t<T>;
+        T wide_u = -g.tilt_u * T(inv_sigma_u), wide_c = g.tilt_c * T(inv_sigma_c),
+          exponent = dr::maximum(dr::fmadd(wide_u, wide_u, wide_c * wide_c) * S(-.5 / dr::LogTwo<double>), S(-1e4));
+        // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
+        Float u = dr::clip(Float(wide_u), -1e3f, 1e3f), c = dr::clip(Float(wide_c), -1e3f, 1e3f);
         if (as_printed) {
             u = dr::abs(u);
             c = dr::abs(c);
         }
-        Float u2 = u * u, c2 = c * c, cos4 = dr::maximum(dr::square(dr::square(g.cos_xi)), Tiny);
-        Float p = dr::exp(-.5f * (u2 + c2));
+        // The power of two by its exponent's leading digits, then by the rest.
+        Float leading(exponent), p = dr::exp2(leading);
+        if constexpr (!std::is_same_v<T, Float>)
+            p = dr::fmadd(p, Float(exponent - T(leading)) * dr::LogTwo<float>, p);
+        p *= dr::square(g.inv_cos2_xi);
         if (!slope_measure && !as_printed)
-            p = dr::select(g.cos_xi < steep_cos, dr::minimum(p, steep_bound * cos4), p);
+            p = dr::select(g.inv_cos2_xi * dr::square(steep_cos) > 1.f, dr::minimum(p, steep_bound), p);
         if (gram_charlier) {
-            Float skew_c = as_printed ? Float(c2 - 1.f) : Float((c2 - 1.f) * u);
-            Float k = 1.f - .5f * c21 * skew_c - (1.f / 6.f) * c03 * u * (u2 - 3.f)
-                    + (.40f / 24.f) * dr::fmadd(c2, c2 - 6.f, 3.f) + (.12f / 4.f) * (c2 - 1.f) * (u2 - 1.f)
-                    + (.23f / 24.f) * dr::fmadd(u2, u2 - 6.f, 3.f);
+            Float u2 = u * u, c2 = c * c, c3 = as_printed ? Float(c2 - 1.f) : Float((c2 - 1.f) * u);
+            Float k = dr::fmadd(-.5f * c21, c3, 1.f);
+            k = dr::fmadd(c03 * (-1.f / 6.f) * u, u2 - 3.f, k);
+            k = dr::fmadd(.40f / 24.f, dr::fmadd(c2, c2 - 6.f, 3.f), k);
+            k = dr::fmadd((.12f / 4.f) * (c2 - 1.f), u2 - 1.f, k);
+            k = dr::fmadd(.23f / 24.f, dr::fmadd(u2, u2 - 6.f, 3.f), k);
             p *= dr::maximum(k, 0.f);
         }
 
-        // cos theta_i cos theta_r/G (Eqs. 61-67), over rho where the bound is in force.
-        Float rho = reflectance(g.cos_zeta), area = g.cos_i * g.cos_o;
+        // cos theta_i cos theta_r/G as area/scale (Eqs. 61-67), at least what the facets themselves hide where
+        // the bound is in force.
+        Float rho = reflectance(g.cos_zeta), area = g.cos_i * g.cos_o, over = 1.f;
         if (shadowing) {
-            Float s_i = sigma_shadow * dr::safe_sqrt(dr::fnmadd(g.cos_i, g.cos_i, 1.f)),
-                  s_o = sigma_shadow * dr::safe_sqrt(dr::fnmadd(g.cos_o, g.cos_o, 1.f));
-            area += dr::fmadd(g.cos_o, hidden(g.cos_i, s_i), g.cos_i * hidden(g.cos_o, s_o));
+            Hidden h_i = hidden(g.cos_i, sigma_shadow * sine(g.cos_i)), h_o = hidden(g.cos_o, sigma_shadow * sine(g.cos_o));
+            over = h_i.over * h_o.over;
+            area = dr::fmadd(area, over, dr::fmadd(g.cos_o * h_i.area, h_o.over, g.cos_i * h_o.area * h_i.over));
         }
         if (bounded) {
-            Float v_i = g.cos_i + hidden(g.cos_i, spread(i)), v_o = g.cos_o + hidden(g.cos_o, spread(o));
-            area = dr::maximum(area, rho / bound * dr::maximum(v_i * g.cos_o, v_o * g.cos_i));
+            Hidden h_i = hidden(g.cos_i, spread(i)), h_o = hidden(g.cos_o, spread(o));
+            Float v_i = g.cos_i + h_i.area / h_i.over, v_o = g.cos_o + h_o.area / h_o.over;
+            area = dr::maximum(area, over * rho / bound * dr::maximum(v_i * g.cos_o, v_o * g.cos_i));
         }
-        return p * rho * scale / cos4 / dr::maximum(area, Tiny);
+        return p * (rho * scale * over) / dr::maximum(area, Tiny);
+    }
+
+    static Float sine(const Float &cos) {
+        namespace dr = drjit;
+        return dr::safe_sqrt(dr::fnmadd(cos, cos, 1.f));
     }
 
     /// sqrt(2) times the facets' standard deviation along v, times the sine.
@@ -281,14 +320,19 @@ private:
         return dr::SqrtTwo<float> * dr::sqrt(dr::square(u * sigma_u) + dr::square(c * sigma_c));
     }
 
-    /// cos F of the shadowing function, Eq. 66, for spread = sigma sin.
-    Float hidden(const Float &cos, const Float &spread) const {
+    /// cos F of the shadowing function, Eq. 66, as a quotient area/over.
+    struct Hidden {
+        Float area, over;
+    };
+
+    /// The same for spread = sigma sin. Beyond nu = 5 it is below 2e-13.
+    Hidden hidden(const Float &cos, const Float &spread) const {
         namespace dr = drjit;
-        Float s = dr::maximum(spread, Tiny), nu = cos / s, p = ierfc[5] * nu;
+        Float nu = dr::minimum(cos / dr::maximum(spread, Tiny), 5.f), p = ierfc[5] * nu;
         for (int k = 4; k >= 0; --k)
             p = (p + ierfc[k]) * nu;
         Float p2 = dr::square(p + 1.f), p4 = p2 * p2;
-        return .5f * dr::InvSqrtPi<float> * s / (p4 * p4);
+        return { .5f * dr::InvSqrtPi<float> * spread, p4 * p4 };
     }
 
     /// Sine and cosine of an angle within a quarter turn of 0, to 5e-8.
@@ -310,16 +354,31 @@ private:
         return { dr::select(w < 0.f, c, -c), -s };
     }
 
-    /// Tilt angle atan(sine/cosine) for a positive cosine; exact to first order, where the lobe is narrow.
-    static Float angle(const Float &sine, const Float &cosine) {
+    /// a/b from 1/b in Float, with the digits of T.
+    template <typename T> static T quotient(const T &a, const T &b, const Float &inv_b) {
         namespace dr = drjit;
-        Float a = dr::abs(sine), x = dr::minimum(a, cosine) / dr::maximum(a, cosine), z = x * x;
-        Float sum = -0.00482252874f;
-        for (float c : { 0.0247340458f, -0.0602031086f, 0.099684718f, -0.140413274f, 0.19974214f, -0.333323916f })
+        Float leading = Float(a) * inv_b;
+        if constexpr (std::is_same_v<T, Float>)
+            return leading;
+        else
+            return T(leading) + T(Float(dr::fnmadd(T(leading), b, a)) * inv_b);
+    }
+
+    /// Tilt angle atan(sine/cosine) for a positive cosine, given |sine|, the larger of it and the cosine, and
+    /// that one's reciprocal: the quotient in T, what atan adds to it in Float.
+    template <typename T>
+    static T angle(const T &sine, const T &cosine, const T &abs_sine, const T &most, const Float &inv_most) {
+        namespace dr = drjit;
+        using S = dr::scalar_t<T>;
+        Mask steep = abs_sine > cosine;
+        T x = quotient(T(dr::minimum(abs_sine, cosine)), most, inv_most);
+        Float t(x), z = t * t, sum = 0.00292068922f;
+        for (float c : { -0.0163679171f, 0.043211845f, -0.0755221311f, 0.106660042f, -0.142110552f, 0.199937728f,
+                         -0.333331527f })
             sum = dr::fmadd(sum, z, c);
-        Float angle = dr::fmadd(x * z, sum, x);
-        angle = dr::select(a > cosine, dr::Pi<float> * .5f - angle, angle);
-        return dr::select(sine < 0.f, -angle, angle);
+        T angle = x + T(t * z * sum);
+        angle = dr::select(steep, S(.5 * dr::Pi<double>) - angle, angle);
+        return dr::select(sine < S(0), -angle, angle);
     }
 
     /// rho of Eq. 63.

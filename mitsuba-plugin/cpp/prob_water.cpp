@@ -181,7 +181,8 @@ public:
         Mask whitecap;
         if constexpr (dr::is_jit_v<Float>) {
             std::tie(bs.wo, whitecap) = m_lobe.sample(si.wi, sample1, sample2, parts);
-            auto g = m_lobe.geometry(si.wi, bs.wo);
+            // A weight divides two Gaussians: it needs no digits to spare.
+            auto g = m_lobe.template geometry<Float>(si.wi, bs.wo);
             bs.pdf = m_lobe.pdf(g, si.wi, parts);
             active &= bs.pdf > 0.f;
             weight = m_lobe.eval(g, si.wi, bs.wo, parts) / bs.pdf;
@@ -223,7 +224,7 @@ public:
         if (unlikely(parts.none() || dr::none_or<false>(active)))
             return 0.f;
         if constexpr (dr::is_jit_v<Float>)
-            return dr::select(active, m_lobe.pdf(m_lobe.geometry(si.wi, wo), si.wi, parts), 0.f);
+            return dr::select(active, m_lobe.pdf(m_lobe.template geometry<Float>(si.wi, wo), si.wi, parts), 0.f);
         else
             return active ? prob_water_bsdf_pdf(&*m_water, parts.bits(), si.wi.data(), wo.data()) : 0.f;
     }

@@ -10,10 +10,10 @@ mod ffi {
     /// The coefficients that the traced variants evaluate: `prob_water::Lobe`, in float32, and the
     /// polynomial of the shadowing function.
     struct Coefficients {
-        cos_wind: f32,
-        sin_wind: f32,
-        sigma_u: f32,
-        sigma_c: f32,
+        cos_wind: f64,
+        sin_wind: f64,
+        sigma_u: f64,
+        sigma_c: f64,
         scale: f32,
         c21: f32,
         c03: f32,

@@ -17,15 +17,15 @@ pub fn up<T: Real>() -> Vec3<T> {
 /// Coefficients of the facets' lobe, f_SW of Eq. 56: what evaluation needs and nothing else.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
-pub struct Facets<T> {
+pub struct Facets<T: Real> {
     /// Cosine of phi_W, the azimuth the wind comes from (Eq. 68).
-    pub cos_wind: T,
+    pub cos_wind: T::Wide,
     /// Sine of phi_W.
-    pub sin_wind: T,
+    pub sin_wind: T::Wide,
     /// Standard deviation of the facets' slope along the wind (Eq. 74).
-    pub sigma_u: T,
+    pub sigma_u: T::Wide,
     /// And across it (Eq. 75).
-    pub sigma_c: T,
+    pub sigma_c: T::Wide,
     /// `1/(2 pi sigma_u sigma_c)` times the 1/4 (or, as printed, pi/4) of Eq. 56.
     pub scale: T,
     /// Skewness c21 of Eq. 78.
@@ -60,19 +60,19 @@ pub struct Facets<T> {
 
 /// What the two directions and the normal fix, however the water is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Geometry<T> {
+pub(crate) struct Geometry<T: Real> {
     /// cos theta_i, cos theta_r (Eq. 60).
     pub cos: [T; 2],
     /// cos zeta (Eq. 61).
     pub cos_zeta: T,
+    /// The same as the source's direction gives it: V_s.H.
+    pub cos_facet: T,
     /// cos xi (Eq. 71).
     pub cos_xi: T,
     /// Sine-like and cosine-like parts of the signed tilt xi_u from normal to half vector (Eqs. 69-71).
-    pub tilt_u: [T; 2],
+    pub tilt_u: [T::Wide; 2],
     /// And of xi_c.
-    pub tilt_c: [T; 2],
-    /// The half vector H (Eq. 59).
-    pub half: Vec3<T>,
+    pub tilt_c: [T::Wide; 2],
 }
 
 impl<T: Real> Facets<T> {
@@ -80,38 +80,37 @@ impl<T: Real> Facets<T> {
     pub(crate) fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> Geometry<T> {
         let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
         let length = T::max(dot(h, h).sqrt(), T::TINY);
-        let half = h.map(|x| x / length);
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
-        let x = T::difference_of_products(i[0], o[0], n[2], i[2], o[2], n[0]);
-        let y = T::difference_of_products(i[1], o[1], n[2], i[2], o[2], n[1]);
-        let zz = h[2] * n[2];
-        let [hu, hc] = self.wind_frame(h[0], h[1]);
-        let [nu, nc] = self.wind_frame(n[0], n[1]);
-        let [xu, xc] = self.wind_frame(x, y);
+        let [iw, ow, nw] = [i, o, n].map(|v| v.map(T::wide));
+        let hw = [iw[0] + ow[0], iw[1] + ow[1], iw[2] + ow[2]];
+        let [hu, hc] = self.wind_frame(hw[0], hw[1]);
+        let [nu, nc] = self.wind_frame(nw[0], nw[1]);
+        let [xu, xc] = self.wind_frame(hw[0] * nw[2] - hw[2] * nw[0], hw[1] * nw[2] - hw[2] * nw[1]);
+        let zz = hw[2] * nw[2];
         Geometry {
             cos: [dot(i, n), dot(o, n)],
             cos_zeta: T::min(T::of(0.5) * length, T::of(1.0)),
-            cos_xi: dot(half, n),
+            cos_facet: dot(i, h) / length,
+            cos_xi: dot(h, n) / length,
             tilt_u: [xu, zz + hu * nu],
             tilt_c: [xc, zz + hc * nc],
-            half,
         }
     }
 
     /// Components along W_u and W_c (Eq. 68) of a horizontal vector.
     #[inline(always)]
-    pub(crate) fn wind_frame(&self, x: T, y: T) -> [T; 2] {
+    pub(crate) fn wind_frame(&self, x: T::Wide, y: T::Wide) -> [T::Wide; 2] {
         [x * self.cos_wind + y * self.sin_wind, y * self.cos_wind - x * self.sin_wind]
     }
 
     /// A tilt in the density's measure: the angle, or its tangent; far out where there is none.
     #[inline(always)]
-    pub(crate) fn measure(&self, [sine, cosine]: [T; 2]) -> T {
+    pub(crate) fn measure(&self, [sine, cosine]: [T::Wide; 2]) -> T::Wide {
         if self.slope_measure {
-            let far = T::of(1e6);
-            T::select(T::lt(T::of(0.0), cosine), sine / T::max(cosine, T::TINY), far)
+            let (far, zero) = (T::Wide::of(1e6), T::Wide::of(0.0));
+            T::Wide::select(T::Wide::lt(zero, cosine), sine / Real::max(cosine, T::Wide::TINY), far)
         } else {
-            sine.atan2(cosine)
+            Real::atan2(sine, cosine)
         }
     }
 
@@ -129,8 +128,8 @@ impl<T: Real> Facets<T> {
     #[inline(always)]
     fn density(&self, g: &Geometry<T>) -> T {
         // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
-        let far = T::of(1e3);
-        let clamp = |x: T| T::max(T::min(x, far), -far);
+        let far = T::Wide::of(1e3);
+        let clamp = |x: T::Wide| Real::max(Real::min(x, far), -far);
         let u = clamp(-self.measure(g.tilt_u) / self.sigma_u);
         let c = clamp(self.measure(g.tilt_c) / self.sigma_c);
         self.scale * self.tilt_density(u, c, g.cos_xi)
@@ -138,15 +137,17 @@ impl<T: Real> Facets<T> {
 
     /// The same over its constants, for tilts U and C in standard deviations.
     #[inline(always)]
-    pub(crate) fn tilt_density(&self, u: T, c: T, cos_xi: T) -> T {
+    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, cos_xi: T) -> T {
         let (u, c) = if self.as_printed { (u.abs(), c.abs()) } else { (u, c) };
         let cos2 = cos_xi * cos_xi;
-        let mut p = T::exp(T::of(-0.5) * (u * u + c * c)) / T::max(cos2 * cos2, T::TINY);
+        let gauss = T::narrow(Real::exp(T::Wide::of(-0.5) * (u * u + c * c)));
+        let mut p = gauss / T::max(cos2 * cos2, T::TINY);
         if !self.slope_measure && !self.as_printed {
             p = T::select(T::lt(cos_xi, self.steep_cos), T::min(p, self.steep_bound), p);
         }
         if self.gram_charlier {
-            p = p * T::max(gram_charlier(self.c21, self.c03, u, c, self.as_printed), T::of(0.0));
+            let correction = gram_charlier(self.c21, self.c03, T::narrow(u), T::narrow(c), self.as_printed);
+            p = p * T::max(correction, T::of(0.0));
         }
         p
     }
@@ -173,24 +174,20 @@ impl<T: Real> Facets<T> {
     /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1.
     #[inline(always)]
     fn visible_bound(&self, [ci, cr]: [T; 2], i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+        let sigma = [self.sigma_u, self.sigma_c].map(T::narrow);
         let visible = |c: T, v: Vec3<T>| {
-            c + hidden(c, T::of(std::f64::consts::SQRT_2) * self.spread(v, n, self.sigma_u, self.sigma_c))
+            let [a, b] = self.stretched(v, n, sigma);
+            c + hidden(c, T::of(std::f64::consts::SQRT_2) * (a * a + b * b).sqrt())
         };
         self.bound / T::max(T::max(visible(ci, i) * cr, visible(cr, o) * ci), T::TINY)
     }
 
-    /// Length of the horizontal part of `v` seen from `n`, stretched by standard deviations along and across the wind.
+    /// The horizontal part of `v` seen from `n`, stretched by standard deviations along and across the wind.
     #[inline(always)]
-    pub(crate) fn spread(&self, v: Vec3<T>, n: Vec3<T>, sigma_u: T, sigma_c: T) -> T {
-        let [u, c] = self.stretched(v, n, sigma_u, sigma_c);
-        (u * u + c * c).sqrt()
-    }
-
-    /// The vector behind [`Facets::spread`].
-    #[inline(always)]
-    pub(crate) fn stretched(&self, v: Vec3<T>, n: Vec3<T>, sigma_u: T, sigma_c: T) -> [T; 2] {
-        let [u, c] = self.wind_frame(v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]);
-        [u * sigma_u, c * sigma_c]
+    pub(crate) fn stretched(&self, v: Vec3<T>, n: Vec3<T>, [sigma_u, sigma_c]: [T; 2]) -> [T; 2] {
+        let (x, y) = (v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]);
+        let [u, c] = self.wind_frame(x.wide(), y.wide());
+        [T::narrow(u) * sigma_u, T::narrow(c) * sigma_c]
     }
 }
 
@@ -211,7 +208,7 @@ impl Parts {
 /// The BRDF of a point of the sea: `(1 - F_WC) f_SW + F_WC f_WC`, finite and non-negative.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
-pub struct Lobe<T> {
+pub struct Lobe<T: Real> {
     /// The facets of smooth water.
     pub facets: Facets<T>,
     /// F_WC, fraction of the water under whitecaps (Eq. 51); 0 where they are switched off.
@@ -249,10 +246,10 @@ impl Lobe<f64> {
         let f = &self.facets;
         Lobe {
             facets: Facets {
-                cos_wind: T::of(f.cos_wind),
-                sin_wind: T::of(f.sin_wind),
-                sigma_u: T::of(f.sigma_u),
-                sigma_c: T::of(f.sigma_c),
+                cos_wind: T::Wide::of(f.cos_wind),
+                sin_wind: T::Wide::of(f.sin_wind),
+                sigma_u: T::Wide::of(f.sigma_u),
+                sigma_c: T::Wide::of(f.sigma_c),
                 scale: T::of(f.scale),
                 c21: T::of(f.c21),
                 c03: T::of(f.c03),

@@ -12,6 +12,7 @@ mod sealed {
 pub trait Real:
     sealed::Sealed
     + Copy
+    + std::fmt::Debug
     + Neg<Output = Self>
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -20,6 +21,10 @@ pub trait Real:
 {
     /// The outcome of a comparison.
     type Mask: Copy + BitAnd<Output = Self::Mask>;
+
+    /// A type with digits to spare for the tilts, whose rounding errors the Gaussian and the
+    /// Gram-Charlier polynomial magnify a thousandfold.
+    type Wide: Real<Wide = Self::Wide, Mask = Self::Mask>;
 
     /// The largest finite value.
     const MAX: Self;
@@ -56,8 +61,10 @@ pub trait Real:
     fn atan2(self, other: Self) -> Self;
     /// `exp(-x^2)/sqrt(pi) - x erfc(x)` for `x >= 0`: the integral of erfc from x to infinity.
     fn ierfc(self) -> Self;
-    /// `(a + b) c - (d + e) f` with one rounding's error even where the products cancel.
-    fn difference_of_products(a: Self, b: Self, c: Self, d: Self, e: Self, f: Self) -> Self;
+    /// In the type that tilts are computed in.
+    fn wide(self) -> Self::Wide;
+    /// Rounded from that type.
+    fn narrow(wide: Self::Wide) -> Self;
 }
 
 macro_rules! forward {
@@ -106,6 +113,7 @@ macro_rules! forward {
 
 impl Real for f64 {
     type Mask = bool;
+    type Wide = f64;
     const MAX: Self = f64::MAX;
     const TINY: Self = f64::MIN_POSITIVE;
     forward!();
@@ -116,8 +124,11 @@ impl Real for f64 {
     fn ierfc(self) -> Self {
         (-self * self).exp() * std::f64::consts::FRAC_2_SQRT_PI / 2.0 - self * libm::erfc(self)
     }
-    fn difference_of_products(a: Self, b: Self, c: Self, d: Self, e: Self, f: Self) -> Self {
-        (a + b) * c - (d + e) * f
+    fn wide(self) -> f64 {
+        self
+    }
+    fn narrow(wide: f64) -> f64 {
+        wide
     }
 }
 
@@ -129,6 +140,7 @@ pub const IERFC: [f32; 6] =
 
 impl Real for f32 {
     type Mask = bool;
+    type Wide = f64;
     const MAX: Self = f32::MAX;
     const TINY: Self = f32::MIN_POSITIVE;
     forward!();
@@ -141,9 +153,11 @@ impl Real for f32 {
         let p4 = (p * p) * (p * p);
         0.564_189_6 / (p4 * p4)
     }
-    fn difference_of_products(a: Self, b: Self, c: Self, d: Self, e: Self, f: Self) -> Self {
-        let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(f64::from);
-        ((a + b) * c - (d + e) * f) as f32
+    fn wide(self) -> f64 {
+        self.into()
+    }
+    fn narrow(wide: f64) -> f32 {
+        wide as f32
     }
 }
 

@@ -110,8 +110,8 @@ fn weights_are_bounded() {
                     (SlopeMeasure::Slope, true) => 2.1,
                     (SlopeMeasure::Angle, false) if w <= 63.0 => 1.5,
                     (SlopeMeasure::Angle, true) if w <= 63.0 => 2.6,
-                    (SlopeMeasure::Angle, false) => 4.0,
-                    (SlopeMeasure::Angle, true) => 20.0,
+                    (SlopeMeasure::Angle, false) => 8.0,
+                    (SlopeMeasure::Angle, true) => 25.0,
                 };
                 let mut worst = 0.0f64;
                 for _ in 0..60_000 {

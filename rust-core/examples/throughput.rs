@@ -1,0 +1,87 @@
+//! Throughput of the scalar core on one thread, as lines of JSON; `validation/bench.py` runs it.
+//!
+//! `cargo run --release -p prob-water --example throughput [-- REPEATS]`: every figure is measured
+//! `REPEATS` times (5 unless told), interleaved with the others, and given as the best and the median.
+
+use prob_water::brdf::up;
+use prob_water::real::Vec3;
+use prob_water::{Lobe, Parameters, Real, SlopeMeasure};
+use rand::{Rng, SeedableRng, rngs::StdRng};
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Directions to take: they stay in the second-level cache.
+const PAIRS: usize = 4096;
+/// Passes over them per measurement.
+const PASSES: usize = 50;
+/// Seas configured per measurement.
+const SEAS: usize = 100;
+
+/// Source, observer and three uniform numbers.
+type Row<T> = (Vec3<T>, Vec3<T>, [T; 3]);
+
+/// Something to time: its name and precision, and a run that returns what it got through per second.
+type Candidate = (String, &'static str, Box<dyn Fn() -> f64>);
+
+fn main() {
+    let repeats = std::env::args().nth(1).map_or(5, |n| n.parse().expect("REPEATS is a number"));
+    let configure = || rate(SEAS, || _ = black_box(black_box(Parameters::default()).configure()));
+    let mut candidates: Vec<Candidate> = vec![("configure".into(), "float64", Box::new(configure))];
+    for (sea, slope_measure) in [("default", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)] {
+        let parameters = Parameters { slope_measure, ..Parameters::default() };
+        let lobe = parameters.configure().expect("the parameters are valid").lobe;
+        add::<f64>(&mut candidates, sea, "float64", lobe);
+        add::<f32>(&mut candidates, sea, "float32", lobe.cast());
+    }
+
+    // The first round warms up.
+    let mut rates = vec![Vec::new(); candidates.len()];
+    for round in 0..=repeats {
+        for (rates, (_, _, run)) in rates.iter_mut().zip(&candidates) {
+            let rate = run();
+            if round > 0 {
+                rates.push(rate);
+            }
+        }
+    }
+    for (mut rates, (name, precision, _)) in rates.into_iter().zip(candidates) {
+        rates.sort_by(f64::total_cmp);
+        let (best, median) = (rates[rates.len() - 1], rates[rates.len() / 2]);
+        let speed = format!(r#""best_per_s": {best:.0}, "median_per_s": {median:.0}"#);
+        println!(r#"{{"name": "{name}", "precision": "{precision}", {speed}}}"#);
+    }
+}
+
+/// Adds eval, pdf and sample of a lobe in one precision.
+fn add<T: Real + 'static>(to: &mut Vec<Candidate>, sea: &str, precision: &'static str, lobe: Lobe<T>) {
+    let mut rng = StdRng::seed_from_u64(1);
+    let rows: Vec<Row<T>> = (0..PAIRS)
+        .map(|_| (direction(&mut rng), direction(&mut rng), [0; 3].map(|_| T::of(rng.random()))))
+        .collect();
+    let mut one = |operation: &str, run: fn(&Lobe<T>, &Row<T>)| {
+        let rows = rows.clone();
+        let pass = move || rows.iter().for_each(|row| run(black_box(&lobe), row));
+        to.push((
+            format!("{operation} {sea}"),
+            precision,
+            Box::new(move || rate(PASSES, &pass) * PAIRS as f64),
+        ));
+    };
+    one("eval", |lobe, (i, o, _)| _ = black_box(lobe.eval(*i, *o, up())));
+    one("pdf", |lobe, (i, o, _)| _ = black_box(lobe.pdf(*i, *o, up())));
+    one("sample", |lobe, (i, _, u)| _ = black_box(lobe.sample(*i, up(), *u)));
+}
+
+/// Runs per second over `count` of them.
+fn rate(count: usize, run: impl Fn()) -> f64 {
+    let start = Instant::now();
+    (0..count).for_each(|_| run());
+    count as f64 / start.elapsed().as_secs_f64()
+}
+
+/// Random, uniform over the hemisphere down to an elevation of a degree.
+fn direction<T: Real>(rng: &mut StdRng) -> Vec3<T> {
+    let (z, phi) = (rng.random_range(0.02..1.0f64), rng.random_range(0.0..std::f64::consts::TAU));
+    let s = (1.0 - z * z).sqrt();
+    [s * phi.cos(), s * phi.sin(), z].map(T::of)
+}
