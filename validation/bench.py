@@ -129,22 +129,23 @@ def commit() -> str:
 
 
 def show(report: dict[str, Any]) -> None:
-    """Prints the tables."""
+    """Prints the tables; those of what was skipped are left out."""
     traced, operations = report["traced"], ("eval", "pdf", "sample")
-    processor = f"{report['machine']['processor']}, {report['machine']['cores']} cores"
-    print(f"{processor}; commit {report['commit']}")
+    print(f"{report['machine']['processor']}, {report['machine']['cores']} cores; commit {report['commit']}")
     print(f"\nllvm_ad_rgb, {traced['pairs']} random pairs, million/s: best (median)")
     for environment, version in traced["versions"].items():
         print(f"{environment}: " + ", ".join(f"{name} {value}" for name, value in version.items()))
     for environment, reason in traced["skipped"].items():
         print(f"skipped, {environment}: {reason}")
-    print(f"{'':36}" + "".join(f"{operation:>15}" for operation in operations))
+    if traced["million_per_s"]:
+        print(f"{'':36}" + "".join(f"{operation:>15}" for operation in operations))
     for name, figures in traced["million_per_s"].items():
         cells = (figures[operation] for operation in operations)
         texts = (f"{cell['best']:.0f} ({cell['median']:.0f})" for cell in cells)
         print(f"{name:36}" + "".join(f"{text:>15}" for text in texts))
 
-    print("\nratio, from the best (from the medians)")
+    if report["ratios"]:
+        print("\nratio, from the best (from the medians)")
     for row in report["ratios"]:
         print(f"{row['operation']:>6}  {row['of'] + ' / ' + row['over']:50} {row['best']:5.2f}"
               f" ({row['median']:.2f})  aim {row['aim']:g}: {'met' if row['met'] else 'missed'}")

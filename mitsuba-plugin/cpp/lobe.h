@@ -31,12 +31,12 @@ template <typename Float_> struct Lobe {
     /// The smallest normal number, and one whose fourth power is normal: keep quotients finite.
     static constexpr float Tiny = 1.17549435e-38f, Small = 1e-9f;
     static constexpr float Largest = 3.40282347e+38f;
-    /// As in the core's sampling.rs.
-    static constexpr float WhitecapAlbedo = 0.22f, FacetAlbedoFloor = 0.01f, Grazing = 1e-12f;
+    /// As in the core's brdf.rs and sampling.rs.
+    static constexpr float SteepFloor = 1e-6f, WhitecapAlbedo = 0.22f, FacetAlbedoFloor = 0.01f, Grazing = 1e-12f;
 
     /// Numbers are data, so that a change does not compile new kernels; decisions are made while tracing.
     Wide cos_wind, sin_wind, inv_sigma_u, inv_sigma_c;
-    Float sigma_u, sigma_c, scale, c21, c03, steep_cos, steep_bound, sigma_shadow,
+    Float sigma_u, sigma_c, scale, c21, c03, steep_gain, sigma_shadow,
         bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance, ior2, whitecap_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
@@ -58,8 +58,7 @@ template <typename Float_> struct Lobe {
         scale = data(c.scale);
         c21 = data(c.c21);
         c03 = data(c.c03);
-        steep_cos = data(c.steep_cos);
-        steep_bound = data(c.steep_bound);
+        steep_gain = data(c.steep_gain);
         sigma_shadow = data(c.sigma_shadow);
         bound = data(c.bound);
         proposal_u = data(c.proposal_u);
@@ -73,15 +72,14 @@ template <typename Float_> struct Lobe {
         whitecap_brdf = data(c.whitecap_brdf);
     }
 
-    DRJIT_STRUCT(Lobe, cos_wind, sin_wind, sigma_u, sigma_c, inv_sigma_u, inv_sigma_c, scale, c21, c03,
-                 steep_cos, steep_bound, sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u,
+    DRJIT_STRUCT(Lobe, cos_wind, sin_wind, sigma_u, sigma_c, inv_sigma_u, inv_sigma_c, scale, c21, c03, steep_gain, sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u,
                  inv_proposal_c, proposal_norm, normal_reflectance, ior2, whitecap_fraction, whitecap_brdf)
 
     /// What the two directions fix, with tilts in numbers of type T.
     template <typename T> struct Geometry {
         Float cos_i, cos_o, cos_zeta;
-        /// 1/cos^2 xi, and the two factors that would make it up were the axes apart: 1 + slope^2.
-        Float inv_cos2_xi, stretch_u, stretch_c;
+        /// tan^2 xi and 1/cos^2 xi.
+        Float tan2_xi, inv_cos2_xi;
         /// Slopes of the half vector along and across the wind.
         Float slope_u, slope_c;
         /// Tilts in the density's measure.
@@ -113,10 +111,8 @@ template <typename Float_> struct Lobe {
         }
         g.slope_u = Float(u) * inv_hz;
         g.slope_c = Float(c) * inv_hz;
-        Float u2 = dr::square(g.slope_u), c2 = dr::square(g.slope_c);
-        g.stretch_u = 1.f + u2;
-        g.stretch_c = 1.f + c2;
-        g.inv_cos2_xi = 1.f + u2 + c2;
+        g.tan2_xi = dr::fmadd(g.slope_u, g.slope_u, g.slope_c * g.slope_c);
+        g.inv_cos2_xi = 1.f + g.tan2_xi;
         return g;
     }
 
@@ -142,17 +138,20 @@ template <typename Float_> struct Lobe {
         if (!parts.facets)
             return dr::select(g.lit, g.cos_o * dr::InvPi<float>, 0.f);
         Proposal p = proposal(i);
-        Float z_u = Float(g.tilt_u) * inv_proposal_u, z_c = Float(g.tilt_c) * inv_proposal_c,
-              towards = dr::fmadd(z_u, p.u, z_c * p.c),
-              shown = dr::maximum(1.f + dr::fmadd(g.slope_u, p.i_u, g.slope_c * p.i_c) * p.inv_cos, Small),
+        // Tilts of the proposal are slopes, or the angle from the normal with its azimuth.
+        Float tilt_over_slope = 1.f, jacobian = dr::square(g.inv_cos2_xi);
+        if (!slope_measure) {
+            tilt_over_slope = atan_over(g.tan2_xi);
+            jacobian = g.inv_cos2_xi * tilt_over_slope;
+        }
+        Float z_u = g.slope_u * inv_proposal_u, z_c = g.slope_c * inv_proposal_c,
+              z2 = dr::square(tilt_over_slope) * dr::fmadd(z_u, z_u, z_c * z_c),
+              slanted = dr::fmadd(g.slope_u, p.i_u, g.slope_c * p.i_c) * p.inv_cos,
+              towards = slanted * tilt_over_slope, shown = dr::maximum(1.f + slanted, Small),
               inv_shown = dr::rcp(shown),
               shape = dr::minimum(2.f * inv_shown, 1.f) + dr::select(towards > 1.f, towards * inv_shown, 0.f),
-              gauss = dr::exp(-.5f * dr::fmadd(z_u, z_u, z_c * z_c)),
-              norm = proposal_norm * (1.f + p.tail),
-              pdf = gauss * shape * dr::square(g.inv_cos2_xi) * p.inv_cos;
-        if (!slope_measure)
-            norm *= g.stretch_u * g.stretch_c;
-        pdf = dr::minimum(pdf / norm, Largest);
+              pdf = dr::exp(-.5f * z2) * shape * jacobian * p.inv_cos / (proposal_norm * (1.f + p.tail));
+        pdf = dr::minimum(pdf, Largest);
         if (parts.whitecaps) {
             auto [facets, all] = albedos(g.cos_i);
             Float share = facets / all;
@@ -195,28 +194,25 @@ template <typename Float_> struct Lobe {
         Mask level = p.inv_d > 1e15f;
         Float e_u = dr::select(level, 1.f, p.u * p.inv_d), e_c = dr::select(level, 0.f, p.c * p.inv_d),
               t_u = dr::fmsub(e_u, r, e_c * q) * proposal_u, t_c = dr::fmadd(e_c, r, e_u * q) * proposal_c;
-        // The half vector up to its length; tangents of tilt angles as sines over cosines.
+        // The half vector of this tilt.
         Mask valid = true;
-        Float z = 1.f;
-        if (!slope_measure) {
-            valid = dr::maximum(dr::abs(t_u), dr::abs(t_c)) < dr::Pi<float> * .5f;
-            auto [s_u, c_u] = quarter_sincos(t_u);
-            auto [s_c, c_c] = quarter_sincos(t_c);
-            t_u = s_u * c_c;
-            t_c = s_c * c_u;
-            z = c_u * c_c;
+        Float tilt2 = dr::fmadd(t_u, t_u, t_c * t_c), sin_over, cos_xi;
+        if (slope_measure) {
+            sin_over = cos_xi = dr::rsqrt(1.f + tilt2);
+        } else {
+            valid = tilt2 < dr::square(dr::Pi<float> * .5f);
+            std::tie(sin_over, cos_xi) = quarter_sincos(tilt2);
         }
 
-        // The tilt or its opposite, in proportion to what they show the source.
-        Float x = dr::fmadd(t_u, p.i_u, t_c * p.i_c), level_area = z * i.z(),
-              a = dr::maximum(level_area + x, 0.f), b = dr::maximum(level_area - x, 0.f);
+        // Kept, or turned around, in proportion to what the two show the source.
+        Float h_u = t_u * sin_over, h_c = t_c * sin_over,
+              level_area = cos_xi * i.z(), slanted = dr::fmadd(h_u, p.i_u, h_c * p.i_c),
+              a = dr::maximum(level_area + slanted, 0.f), b = dr::maximum(level_area - slanted, 0.f);
         Mask turn = !in_tail && rest * (a + b) < b;
-        Float length = dr::rsqrt(dr::fmadd(z, z, dr::fmadd(t_u, t_u, t_c * t_c))),
-              turned = dr::select(turn, -length, length);
-        t_u *= turned;
-        t_c *= turned;
+        h_u = dr::select(turn, -h_u, h_u);
+        h_c = dr::select(turn, -h_c, h_c);
         Float cos_w(cos_wind), sin_w(sin_wind);
-        Vector3f h(dr::fmsub(t_u, cos_w, t_c * sin_w), dr::fmadd(t_u, sin_w, t_c * cos_w), z * length);
+        Vector3f h(dr::fmsub(h_u, cos_w, h_c * sin_w), dr::fmadd(h_u, sin_w, h_c * cos_w), cos_xi);
         Vector3f o = dr::fmsub(Vector3f(2.f * dr::dot(i, h)), h, i);
         o = dr::select(valid, o, 0.f);
         if (parts.whitecaps)
@@ -279,9 +275,10 @@ private:
         Float leading(exponent), p = dr::exp2(leading);
         if constexpr (!std::is_same_v<T, Float>)
             p = dr::fmadd(p, Float(exponent - T(leading)) * dr::LogTwo<float>, p);
-        p *= dr::square(g.inv_cos2_xi);
+        Float gauss = p, inv_cos4 = dr::square(g.inv_cos2_xi);
+        p *= inv_cos4;
         if (!slope_measure && !as_printed)
-            p = dr::select(g.inv_cos2_xi * dr::square(steep_cos) > 1.f, dr::minimum(p, steep_bound), p);
+            p = dr::select(inv_cos4 > steep_gain, dr::minimum(p, dr::maximum(gauss * steep_gain, SteepFloor)), p);
         if (gram_charlier) {
             Float u2 = u * u, c2 = c * c, c3 = as_printed ? Float(c2 - 1.f) : Float((c2 - 1.f) * u);
             Float k = dr::fmadd(-.5f * c21, c3, 1.f);
@@ -335,23 +332,41 @@ private:
         return { .5f * dr::InvSqrtPi<float> * spread, p4 * p4 };
     }
 
-    /// Sine and cosine of an angle within a quarter turn of 0, to 5e-8.
-    static std::pair<Float, Float> quarter_sincos(const Float &x) {
+    /// sin(x)/x and cos(x), to 5e-8, of x^2 up to a quarter turn's.
+    static std::pair<Float, Float> quarter_sincos(const Float &x2) {
         namespace dr = drjit;
-        Float z = x * x;
-        Float s = dr::fmadd(dr::fmadd(dr::fmadd(2.60005462e-06f, z, -0.000198066151f), z, 0.00833301729f), z,
+        Float s = dr::fmadd(dr::fmadd(dr::fmadd(2.60005462e-06f, x2, -0.000198066151f), x2, 0.00833301729f), x2,
                             -0.166666571f);
-        Float c = dr::fmadd(dr::fmadd(dr::fmadd(2.31943849e-05f, z, -0.00138559271f), z, 0.0416639894f), z,
+        Float c = dr::fmadd(dr::fmadd(dr::fmadd(2.31943849e-05f, x2, -0.00138559271f), x2, 0.0416639894f), x2,
                             -0.499999323f);
-        return { dr::fmadd(x * z, s, x), dr::fmadd(z, c, 1.f) };
+        return { dr::fmadd(x2, s, 1.f), dr::fmadd(x2, c, 1.f) };
     }
 
     /// Sine and cosine of 2 pi u for u in [0, 1).
     static std::pair<Float, Float> turn_sincos(const Float &u) {
         namespace dr = drjit;
-        Float w = u - .5f;
-        auto [s, c] = quarter_sincos(dr::TwoPi<float> * (.25f - dr::abs(w)));
-        return { dr::select(w < 0.f, c, -c), -s };
+        Float w = u - .5f, x = dr::TwoPi<float> * (.25f - dr::abs(w));
+        auto [s, c] = quarter_sincos(x * x);
+        return { dr::select(w < 0.f, c, -c), -x * s };
+    }
+
+    /// What atan(x)/x adds to 1, over x^2, for x^2 in [0, 1]: relative error of atan 2e-8.
+    static Float atan_rest(const Float &x2) {
+        namespace dr = drjit;
+        Float sum = 0.00292068922f;
+        for (float c : { -0.0163679171f, 0.043211845f, -0.0755221311f, 0.106660042f, -0.142110552f, 0.199937728f,
+                         -0.333331527f })
+            sum = dr::fmadd(sum, x2, c);
+        return sum;
+    }
+
+    /// atan(t)/t of t^2.
+    static Float atan_over(const Float &t2) {
+        namespace dr = drjit;
+        Float inv_t = dr::rsqrt(dr::maximum(t2, Tiny));
+        Mask steep = t2 > 1.f;
+        Float x2 = dr::select(steep, dr::square(inv_t), t2), over = dr::fmadd(x2, atan_rest(x2), 1.f);
+        return dr::select(steep, dr::fmsub(dr::Pi<float> * .5f, inv_t, over * x2), over);
     }
 
     /// a/b from 1/b in Float, with the digits of T.
@@ -372,11 +387,8 @@ private:
         using S = dr::scalar_t<T>;
         Mask steep = abs_sine > cosine;
         T x = quotient(T(dr::minimum(abs_sine, cosine)), most, inv_most);
-        Float t(x), z = t * t, sum = 0.00292068922f;
-        for (float c : { -0.0163679171f, 0.043211845f, -0.0755221311f, 0.106660042f, -0.142110552f, 0.199937728f,
-                         -0.333331527f })
-            sum = dr::fmadd(sum, z, c);
-        T angle = x + T(t * z * sum);
+        Float t(x), t2 = t * t;
+        T angle = x + T(t * t2 * atan_rest(t2));
         angle = dr::select(steep, S(.5 * dr::Pi<double>) - angle, angle);
         return dr::select(sine < S(0), -angle, angle);
     }

@@ -34,8 +34,8 @@ pub struct Facets<T: Real> {
     pub c03: T,
     /// Cosine of the tilt beyond which `exp(-xi^2/2 sigma^2)/cos^4 xi` would rise again ([`steep_facets`]).
     pub steep_cos: T,
-    /// The most it may be there.
-    pub steep_bound: T,
+    /// 1/cos^4 of that tilt.
+    pub steep_gain: T,
     /// sigma of Eq. 64.
     pub sigma_shadow: T,
     /// What `rho G (1 + Lambda)` is held to ([`Facets::visible_bound`]).
@@ -60,13 +60,11 @@ pub struct Facets<T: Real> {
 
 /// What the two directions and the normal fix, however the water is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Geometry<T: Real> {
+struct Geometry<T: Real> {
     /// cos theta_i, cos theta_r (Eq. 60).
     pub cos: [T; 2],
     /// cos zeta (Eq. 61).
     pub cos_zeta: T,
-    /// The same as the source's direction gives it: V_s.H.
-    pub cos_facet: T,
     /// cos xi (Eq. 71).
     pub cos_xi: T,
     /// Sine-like and cosine-like parts of the signed tilt xi_u from normal to half vector (Eqs. 69-71).
@@ -77,7 +75,7 @@ pub(crate) struct Geometry<T: Real> {
 
 impl<T: Real> Facets<T> {
     #[inline(always)]
-    pub(crate) fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> Geometry<T> {
+    fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> Geometry<T> {
         let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
         let length = T::max(dot(h, h).sqrt(), T::TINY);
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
@@ -90,7 +88,6 @@ impl<T: Real> Facets<T> {
         Geometry {
             cos: [dot(i, n), dot(o, n)],
             cos_zeta: T::min(T::of(0.5) * length, T::of(1.0)),
-            cos_facet: dot(i, h) / length,
             cos_xi: dot(h, n) / length,
             tilt_u: [xu, zz + hu * nu],
             tilt_c: [xc, zz + hc * nc],
@@ -99,13 +96,13 @@ impl<T: Real> Facets<T> {
 
     /// Components along W_u and W_c (Eq. 68) of a horizontal vector.
     #[inline(always)]
-    pub(crate) fn wind_frame(&self, x: T::Wide, y: T::Wide) -> [T::Wide; 2] {
+    fn wind_frame(&self, x: T::Wide, y: T::Wide) -> [T::Wide; 2] {
         [x * self.cos_wind + y * self.sin_wind, y * self.cos_wind - x * self.sin_wind]
     }
 
     /// A tilt in the density's measure: the angle, or its tangent; far out where there is none.
     #[inline(always)]
-    pub(crate) fn measure(&self, [sine, cosine]: [T::Wide; 2]) -> T::Wide {
+    fn measure(&self, [sine, cosine]: [T::Wide; 2]) -> T::Wide {
         if self.slope_measure {
             let (far, zero) = (T::Wide::of(1e6), T::Wide::of(0.0));
             T::Wide::select(T::Wide::lt(zero, cosine), sine / Real::max(cosine, T::Wide::TINY), far)
@@ -143,7 +140,8 @@ impl<T: Real> Facets<T> {
         let gauss = T::narrow(Real::exp(T::Wide::of(-0.5) * (u * u + c * c)));
         let mut p = gauss / T::max(cos2 * cos2, T::TINY);
         if !self.slope_measure && !self.as_printed {
-            p = T::select(T::lt(cos_xi, self.steep_cos), T::min(p, self.steep_bound), p);
+            let held = T::max(gauss * self.steep_gain, T::of(STEEP_FLOOR));
+            p = T::select(T::lt(cos_xi, self.steep_cos), T::min(p, held), p);
         }
         if self.gram_charlier {
             let correction = gram_charlier(self.c21, self.c03, T::narrow(u), T::narrow(c), self.as_printed);
@@ -184,7 +182,7 @@ impl<T: Real> Facets<T> {
 
     /// The horizontal part of `v` seen from `n`, stretched by standard deviations along and across the wind.
     #[inline(always)]
-    pub(crate) fn stretched(&self, v: Vec3<T>, n: Vec3<T>, [sigma_u, sigma_c]: [T; 2]) -> [T; 2] {
+    fn stretched(&self, v: Vec3<T>, n: Vec3<T>, [sigma_u, sigma_c]: [T; 2]) -> [T; 2] {
         let (x, y) = (v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]);
         let [u, c] = self.wind_frame(x.wide(), y.wide());
         [T::narrow(u) * sigma_u, T::narrow(c) * sigma_c]
@@ -254,7 +252,7 @@ impl Lobe<f64> {
                 c21: T::of(f.c21),
                 c03: T::of(f.c03),
                 steep_cos: T::of(f.steep_cos),
-                steep_bound: T::of(f.steep_bound),
+                steep_gain: T::of(f.steep_gain),
                 sigma_shadow: T::of(f.sigma_shadow),
                 bound: T::of(f.bound),
                 proposal_u: T::of(f.proposal_u),
@@ -300,10 +298,13 @@ impl Facets<f64> {
     }
 }
 
-/// Where `exp(-xi^2/2 sigma^2)/cos^4 xi` starts to rise again (`xi/sigma^2 = 4 tan xi`), as a
-/// cosine, and the most it may be beyond: its value there, or 0.01 where that is less. A Gaussian
-/// of tilt angles is finite where facets stand upright and 1/cos^4 is not; unbounded, the albedo
-/// would pass 1 in a hurricane at grazing angles. Slopes need no such bound.
+/// What steep facets may count beside level ones, whatever their density.
+pub const STEEP_FLOOR: f64 = 1e-6;
+
+/// Where `exp(-xi^2/2 sigma^2)/cos^4 xi` starts to rise again (`xi/sigma^2 = 4 tan xi`), as a cosine,
+/// and 1/cos^4 there, which is kept beyond (or [`STEEP_FLOOR`] where that is more). A Gaussian of tilt
+/// angles is finite where facets stand upright and 1/cos^4 is not: unbounded, the albedo would pass 1
+/// in a hurricane within a tenth of a degree of the horizon. Slopes need no such bound.
 pub(crate) fn steep_facets(sigma: f64) -> [f64; 2] {
     let rises = |xi: f64| 4.0 * xi.tan() * sigma * sigma > xi;
     let (mut low, mut high) = (0.1, std::f64::consts::FRAC_PI_2);
@@ -312,5 +313,5 @@ pub(crate) fn steep_facets(sigma: f64) -> [f64; 2] {
         if rises(middle) { high = middle } else { low = middle }
     }
     let cos = high.cos();
-    [cos, ((-0.5 * (high / sigma).powi(2)).exp() / cos.powi(4)).max(0.01)]
+    [cos, cos.powi(-4)]
 }

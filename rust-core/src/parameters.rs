@@ -153,7 +153,7 @@ impl Parameters {
         let (sin_wind, cos_wind) = self.wind_direction.to_radians().sin_cos();
         let as_printed = self.readings == Readings::AsPrinted;
         let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
-        let [steep_cos, steep_bound] = steep_facets(sigma_u.max(sigma_c));
+        let [steep_cos, steep_gain] = steep_facets(sigma_u.max(sigma_c));
         let slope_measure = self.slope_measure == SlopeMeasure::Slope;
         let mut facets = Facets {
             cos_wind,
@@ -164,7 +164,7 @@ impl Parameters {
             c21,
             c03,
             steep_cos,
-            steep_bound,
+            steep_gain,
             sigma_shadow: shadowing::sigma(wind.w10),
             // In tilt angles facets show up to (8 sigma_i^2 + 3 sigma_j^2)/3 more area than their slopes' Lambda.
             // A percent is left to quadratures and rounding, so that "at most 1" can be checked.
