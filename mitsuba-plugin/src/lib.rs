@@ -33,7 +33,7 @@ mod ffi {
         shadowing: bool,
         bounded: bool,
         as_printed: bool,
-        ierfc: [f32; 6],
+        ierfc: [f32; 7],
     }
 
     extern "Rust" {

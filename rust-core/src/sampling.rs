@@ -6,12 +6,12 @@
 //! standard deviations, shows the source the area `c (1 + rD)`, with `c = cos theta_i`, `r` the part of
 //! `z` along the source and `D` the spread of tilts along it over `c`. It is drawn from
 //!
-//! `phi(z)/(1 + D phi(1/D)) [2 A(z)/(A(z) + A(-z)) + rD (where rD > 1)]`:
+//! `phi(z)/(1 + D phi(v)) [2 A(z)/(A(z) + A(-z)) + (rD - 1)+ exp(v (r - v))]` with `v = 1/D`:
 //!
 //! either a Gaussian tilt, kept or turned around in proportion to the areas `A` that the two show
-//! (exact while both face the source), or a Rayleigh tail towards the source. Nothing but
+//! (exact while both face the source), or one tilted towards it by `r - v`, Rayleigh. Nothing but
 //! elementary functions is needed, and against the ideal, area-weighted Gaussian of slopes its weight
-//! is at most 1.22 (`v = 1/D` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
+//! is at most 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
 use crate::Real;
 use crate::brdf::{Facets, Lobe, Parts};
@@ -60,7 +60,9 @@ struct Proposal<T> {
     towards: [T; 2],
     /// D.
     d: T,
-    /// D phi(1/D).
+    /// v = 1/D.
+    v: T,
+    /// D phi(v).
     tail: T,
 }
 
@@ -83,9 +85,9 @@ impl<T: Real> Facets<T> {
         let towards = [i[0] * self.proposal_u / c, i[1] * self.proposal_c / c];
         let d2 = towards[0] * towards[0] + towards[1] * towards[1];
         let d = d2.sqrt();
-        let inverse_square = T::of(1.0) / T::max(d2, T::TINY);
-        let tail = d * T::exp(T::of(-0.5) * inverse_square) * T::of(0.398_942_280_401_432_7);
-        Proposal { towards, d, tail }
+        let v = T::of(1.0) / T::max(d, T::of(LEVEL));
+        let tail = d * T::exp(T::of(-0.5) * v * v) * T::of(0.398_942_280_401_432_7);
+        Proposal { towards, d, v, tail }
     }
 
     /// The half vector of a tilt; zero where a tilt angle passes the horizontal.
@@ -125,13 +127,12 @@ impl<T: Real> Facets<T> {
         let rest = T::select(in_tail, scaled / T::max(p.tail, T::TINY), scaled - p.tail);
         let radius2 = |x: T| T::max(-two * T::max(one - x, T::TINY).ln(), zero);
         let (sin, cos) = (T::of(std::f64::consts::TAU) * T::select(in_tail, rest, u[1])).sin_cos();
-        // Box-Muller around the source's azimuth; in the tail r is Rayleigh beyond 1/D.
-        let first = radius2(u[0]);
-        let d = T::max(p.d, T::of(LEVEL));
+        // Box-Muller around the source's azimuth; in the tail r is Rayleigh beyond v.
+        let first = radius2(u[0]).sqrt();
         let overhead = T::lt(p.d, T::of(LEVEL));
-        let r = T::select(in_tail, (first + one / (d * d)).sqrt(), first.sqrt() * cos);
-        let q = T::select(in_tail, radius2(u[1]).sqrt() * cos, first.sqrt() * sin);
-        let e = [T::select(overhead, one, p.towards[0] / d), T::select(overhead, zero, p.towards[1] / d)];
+        let r = T::select(in_tail, p.v + first, first * cos);
+        let q = T::select(in_tail, radius2(u[1]).sqrt() * cos, first * sin);
+        let e = [T::select(overhead, one, p.towards[0] * p.v), T::select(overhead, zero, p.towards[1] * p.v)];
         let h = self
             .half_vector([(e[0] * r - e[1] * q) * self.proposal_u, (e[1] * r + e[0] * q) * self.proposal_c]);
         // The opposite tilt with probability b/(a + b), by the areas that the two show.
@@ -141,27 +142,31 @@ impl<T: Real> Facets<T> {
         [T::select(turn, -h[0], h[0]), T::select(turn, -h[1], h[1]), h[2]]
     }
 
-    /// Density of `o`, 1/sr.
+    /// Density, 1/sr, of the observer's direction that makes `h` with the source's, both added up and
+    /// not of unit length.
     #[inline(always)]
-    fn pdf(&self, i: Vec3<T>, o: Vec3<T>) -> T {
-        let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
-        let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
+    fn pdf(&self, i: Vec3<T>, h: Vec3<T>) -> T {
+        let (zero, one, two, half) = (T::of(0.0), T::of(1.0), T::of(2.0), T::of(0.5));
         let length = T::max(dot(h, h).sqrt(), T::TINY);
         let h = h.map(|x| x / length);
         let p = self.proposal(i);
         let (tilt, jacobian) = self.tilt(h);
         let z = [tilt[0] / self.proposal_u, tilt[1] / self.proposal_c];
-        let rd = z[0] * p.towards[0] + z[1] * p.towards[1];
+        let z2 = z[0] * z[0] + z[1] * z[1];
+        let beyond = z[0] * p.towards[0] + z[1] * p.towards[1] - one;
         // The area shown over its value for a level facet; i.H, not |i + o|/2, agrees with the tilts
         // to the last digit at grazing angles.
         let cos = dot(i, h);
         let shown = cos / T::max(h[2] * T::max(i[2], T::of(GRAZING)), T::TINY);
-        let shape = T::min(shown, two) + T::select(T::lt(one, rd), rd, zero);
-        let gauss = T::exp(T::of(-0.5) * (z[0] * z[0] + z[1] * z[1]))
-            / (T::of(4.0 * std::f64::consts::TAU) * self.proposal_u * self.proposal_c);
-        let pdf = gauss * shape / ((one + p.tail) * T::max(cos * jacobian, T::TINY));
-        let valid = T::lt(zero, i[2]) & T::lt(zero, o[2]) & T::lt(zero, cos);
-        T::select(valid, T::min(pdf, T::MAX), zero)
+        let gauss = T::exp(-half * z2) * T::min(shown, two);
+        let tail = T::select(
+            T::lt(zero, beyond),
+            beyond * T::exp(T::min(p.v * p.v * beyond - half * z2, zero)),
+            zero,
+        );
+        let norm = T::of(4.0 * std::f64::consts::TAU) * self.proposal_u * self.proposal_c * (one + p.tail);
+        let pdf = (gauss + tail) / (norm * T::max(cos * jacobian, T::TINY));
+        T::select(T::lt(zero, cos), T::min(pdf, T::MAX), zero)
     }
 }
 
@@ -197,17 +202,18 @@ impl Facets<f64> {
 }
 
 impl<T: Real> Lobe<T> {
-    /// Probability of drawing from the facets: by what each part reflects, roughly.
+    /// Probabilities of drawing from the facets and from the whitecaps: by what each reflects, roughly.
     #[inline(always)]
-    fn facet_share(&self, cos: T, parts: Parts) -> T {
+    fn shares(&self, cos: T, parts: Parts) -> [T; 2] {
         let (zero, one) = (T::of(0.0), T::of(1.0));
         match parts {
-            Parts { whitecaps: false, .. } => one,
-            Parts { facets: false, .. } => zero,
+            Parts { whitecaps: false, .. } => [one, zero],
+            Parts { facets: false, .. } => [zero, one],
             _ => {
                 let albedo = self.facets.reflectance.schlick(cos) + T::of(FACET_ALBEDO_FLOOR);
                 let facets = (one - self.whitecap_fraction) * albedo;
-                facets / (facets + T::of(WHITECAP_ALBEDO) * self.whitecap_fraction)
+                let whitecaps = T::of(WHITECAP_ALBEDO) * self.whitecap_fraction;
+                [facets, whitecaps].map(|x| x / (facets + whitecaps))
             }
         }
     }
@@ -221,19 +227,19 @@ impl<T: Real> Lobe<T> {
     /// The same where only some parts are drawn from.
     #[inline(always)]
     pub fn pdf_parts(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>, parts: Parts) -> T {
-        let (zero, one) = (T::of(0.0), T::of(1.0));
+        let zero = T::of(0.0);
         if !parts.facets && !parts.whitecaps {
             return zero;
         }
         let (ci, cr) = (dot(i, n), dot(o, n));
-        let share = self.facet_share(ci, parts);
-        let cosine = T::select(T::lt(zero, ci), T::max(cr, zero), zero) * T::of(std::f64::consts::FRAC_1_PI);
-        let mut pdf = (one - share) * cosine;
+        let [facets, whitecaps] = self.shares(ci, parts);
+        let mut pdf = whitecaps * cr * T::of(std::f64::consts::FRAC_1_PI);
         if parts.facets {
             let frame = self.facets.frame(n);
-            pdf = pdf + share * self.facets.pdf(frame.to_local(i), frame.to_local(o));
+            let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
+            pdf = pdf + facets * self.facets.pdf(frame.to_local(i), frame.to_local(h));
         }
-        pdf
+        T::select(T::lt(zero, ci) & T::lt(zero, cr), pdf, zero)
     }
 
     /// Draws an observer's direction for the source `i`, with three uniform numbers of [0, 1).
@@ -245,7 +251,7 @@ impl<T: Real> Lobe<T> {
     /// The same from some parts only.
     pub fn sample_parts(&self, i: Vec3<T>, n: Vec3<T>, u: [T; 3], parts: Parts) -> Sample<T> {
         let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
-        let share = self.facet_share(dot(i, n), parts);
+        let [share, _] = self.shares(dot(i, n), parts);
         let whitecap = !u[0].below(share);
         let direction = if whitecap {
             cosine_direction(n, [u[1], u[2]])
