@@ -102,21 +102,24 @@ def direction(theta, phi):
     return np.stack(np.broadcast_arrays(np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)), axis=-1)
 
 
-def pairs(core, count, rng, wind_direction=0.0, reach=3.5, grazing=88.0):
+def pairs(core, count, rng, wind_direction=0.0, reach=3.5, grazing=88.0, slopes=False):
     """Directions to source and observer in float32 whose half vector is tilted by up to about `reach`
-    standard deviations, the source from overhead to `grazing` degrees; those that leave the hemisphere
-    are drawn again."""
+    standard deviations (of tilt angles or slopes), the source from overhead to `grazing` degrees; those
+    that leave the hemisphere are drawn again."""
     found = []
     while sum(map(len, found)) < count:
         i = direction(rng.uniform(0, grazing, count), rng.uniform(0, 360, count))
         r, psi = reach * np.sqrt(rng.uniform(0, 1, count)), rng.uniform(0, 2 * np.pi, count)
-        tu, tc = np.tan(np.sqrt(core.sigma_u2) * r * np.cos(psi)), np.tan(np.sqrt(core.sigma_c2) * r * np.sin(psi))
+        tu, tc = np.sqrt(core.sigma_u2) * r * np.cos(psi), np.sqrt(core.sigma_c2) * r * np.sin(psi)
+        level = np.maximum(np.abs(tu), np.abs(tc)) < 0.5 * np.pi
+        if not slopes:
+            tu, tc = np.tan(tu), np.tan(tc)
         w = np.radians(wind_direction)
         half = np.stack([tu * np.cos(w) - tc * np.sin(w), tu * np.sin(w) + tc * np.cos(w), np.ones(count)], axis=1)
         half /= np.linalg.norm(half, axis=1, keepdims=True)
         o = 2 * np.sum(half * i, axis=1, keepdims=True) * half - i
         i, o = i.astype(np.float32), o.astype(np.float32)
-        keep = (o[:, 2] > np.cos(np.radians(grazing))) & (np.sum(half * i, axis=1) > 0)
+        keep = (o[:, 2] > np.cos(np.radians(grazing))) & (np.sum(half * i, axis=1) > 0) & (slopes | level)
         found.append(np.concatenate([i, o], axis=1)[keep])
     both = np.concatenate(found)[:count]
     return both[:, :3], both[:, 3:]

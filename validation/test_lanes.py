@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from core import Core, direction, pairs
-from float32_errors import BOUND, FOOTPRINTS, MEDIAN, WINDS, errors, evaluate, table
+from float32_errors import (
+    BOUND, CORNER_BOUND, CORNER_REACH, FOOTPRINTS, MEDIAN, REACH, WINDS, errors, evaluate, table,
+)
 
 SWITCHES = [
     {},
@@ -20,15 +22,17 @@ SWITCHES = [
 @pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb"])
 @pytest.mark.parametrize("switches", SWITCHES, ids=lambda s: "-".join(s) or "default")
 def test_float32_error(use, variant, switches, full):
-    """f and its density are within 1e-4 of float64, 1e-5 in the median."""
+    """f and its density are within 1e-4 of float64 (traced: 1.5e-4 in the corner), 1e-5 in the median."""
     mi, rng = use(variant), np.random.default_rng(2)
-    count = (200_000 if full else 20_000) if variant.startswith("llvm") else 1500
+    traced = variant.startswith("llvm")
+    count = (200_000 if full else 20_000) if traced else 1500
     for wind, footprint in itertools.product(WINDS, FOOTPRINTS):
         parameters = {"friction_velocity": wind, "footprint": footprint, "whitecaps": False, **switches}
-        error, density, _ = errors(mi, parameters, count, rng)
-        assert np.median(error) < MEDIAN and np.median(density) < MEDIAN, (parameters, np.median(error))
-        assert error.max() < BOUND, (parameters, error.max())
-        assert density.max() < 2 * BOUND, (parameters, density.max())
+        for reach, bound in ((REACH, BOUND), (CORNER_REACH, CORNER_BOUND if traced else BOUND)):
+            error, density, _ = errors(mi, parameters, count, rng, reach)
+            assert np.median(error) < MEDIAN and np.median(density) < MEDIAN, (parameters, np.median(error))
+            assert error.max() < bound, (parameters, reach, error.max())
+            assert density.max() < bound, (parameters, reach, density.max())
 
 
 def test_table_by_wind_footprint_and_angle(use):
@@ -36,7 +40,7 @@ def test_table_by_wind_footprint_and_angle(use):
     print()
     for wind, footprint, cells in table(use("llvm_ad_rgb"), 20_000, np.random.default_rng(3)):
         print(f"w* {wind:6.1f} D {footprint:5}  " + "  ".join(f"{m:.0e}/{w:.0e}" for m, w in cells))
-        assert max(worst for _, worst in cells) < BOUND
+        assert max(median for median, _ in cells) < MEDIAN and max(worst for _, worst in cells) < CORNER_BOUND
 
 
 @pytest.mark.parametrize("switches", SWITCHES, ids=lambda s: "-".join(s) or "default")
@@ -54,8 +58,7 @@ def test_scalar_and_traced_agree(use, switches):
     (f, pdf, wo, weight), (f2, pdf2, wo2, weight2) = results.values()
     gaussian = Core(**{**parameters, "gram_charlier": False})
     size = gaussian.f(i, o) * o[:, 2]
-    assert np.max(np.abs(f - f2) / size) < BOUND
-    assert np.max(np.abs(pdf - pdf2) / pdf) < 2 * BOUND
+    assert np.max(np.abs(f - f2) / size) < BOUND and np.max(np.abs(pdf - pdf2) / pdf) < BOUND
     # A draw on the edge of a decision may fall on its other side.
     same = np.max(np.abs(wo - wo2), axis=1) < 1e-4
     assert same.mean() > 0.995

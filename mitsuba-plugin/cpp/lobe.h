@@ -35,9 +35,9 @@ template <typename Float_> struct Lobe {
     static constexpr float SteepFloor = 1e-6f, WhitecapAlbedo = 0.22f, FacetAlbedoFloor = 0.01f, Grazing = 1e-12f;
 
     /// Numbers are data, so that a change does not compile new kernels; decisions are made while tracing.
-    Wide cos_wind, sin_wind, inv_sigma_u, inv_sigma_c;
+    Wide cos_wind, sin_wind, inv_sigma_u, inv_sigma_c, ior2;
     Float sigma_u, sigma_c, scale, c21, c03, steep_gain, sigma_shadow,
-        bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance, ior2, whitecap_fraction, whitecap_brdf;
+        bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance, whitecap_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
     float ierfc[7] = {};
@@ -66,8 +66,8 @@ template <typename Float_> struct Lobe {
         inv_proposal_u = data(1.f / c.proposal_u);
         inv_proposal_c = data(1.f / c.proposal_c);
         proposal_norm = data(8.f * drjit::Pi<float> * c.proposal_u * c.proposal_c);
-        normal_reflectance = data(c.normal_reflectance);
-        ior2 = data(c.ior2);
+        normal_reflectance = data((float) c.normal_reflectance);
+        ior2 = wide(c.ior2);
         whitecap_fraction = data(c.whitecap_fraction);
         whitecap_brdf = data(c.whitecap_brdf);
     }
@@ -293,7 +293,7 @@ private:
 
         // cos theta_i cos theta_r/G as area/scale (Eqs. 61-67), at least what the facets themselves hide where
         // the bound is in force.
-        Float rho = reflectance(g.cos_zeta), area = g.cos_i * g.cos_o, over = 1.f;
+        Float rho = reflectance<T>(g.cos_zeta), area = g.cos_i * g.cos_o, over = 1.f;
         if (shadowing) {
             auto [h_i, h_o] = hidden(g.cos_i, sigma_shadow * sine(g.cos_i), g.cos_o, sigma_shadow * sine(g.cos_o));
             over = h_i.over * h_o.over;
@@ -333,10 +333,11 @@ private:
         return { hidden(cos_i * s_o * inv, s_i), hidden(cos_o * s_i * inv, s_o) };
     }
 
-    /// The same of nu = cos/spread; beyond 5 it is below 2e-13.
+    /// The same of nu = cos/spread; beyond 3.6 it is below 1e-8, and `over` must leave room for its square in
+    /// derivatives.
     Hidden hidden(const Float &nu, const Float &spread) const {
         namespace dr = drjit;
-        Float x = dr::minimum(nu, 5.f), p = ierfc[6] * x;
+        Float x = dr::minimum(nu, 3.6f), p = ierfc[6] * x;
         for (int k = 5; k >= 0; --k)
             p = (p + ierfc[k]) * x;
         Float p2 = dr::square(p + 1.f), p4 = p2 * p2;
@@ -400,7 +401,7 @@ private:
         Float t(x), t2 = t * t;
         T angle = x + T(t * t2 * atan_rest(t2));
         angle = dr::select(abs_sine > cosine, S(.5 * dr::Pi<double>) - angle, angle);
-        return dr::mulsign(angle, sine);
+        return dr::select(sine < S(0), -angle, angle);
     }
 
     /// rho of Eq. 63.
@@ -410,14 +411,16 @@ private:
         return dr::fmadd(1.f - normal_reflectance, m2 * m2 * m, normal_reflectance);
     }
 
-    Float reflectance(const Float &cos) const {
+    /// rho of Schlick or of Fresnel's equations, to the digits of T.
+    template <typename T> Float reflectance(const Float &cos_zeta) const {
         namespace dr = drjit;
         if (!exact)
-            return schlick(cos);
-        Float excess = ior2 - 1.f, g = dr::sqrt(dr::fmadd(cos, cos, excess)), s = cos + g,
-              p = dr::fmadd(ior2, cos, g), rs = excess / (s * s),
-              rp = excess * dr::fmsub(ior2 + 1.f, cos * cos, 1.f) / (p * p);
-        return .5f * dr::fmadd(rs, rs, rp * rp);
+            return schlick(cos_zeta);
+        using S = dr::scalar_t<T>;
+        T cos(cos_zeta), n2(ior2), excess = n2 - S(1), g = dr::sqrt(dr::fmadd(cos, cos, excess)), s = cos + g,
+            p = dr::fmadd(n2, cos, g), rs = excess / (s * s),
+            rp = excess * dr::fmsub(n2 + S(1), cos * cos, T(S(1))) / (p * p);
+        return Float(S(.5) * dr::fmadd(rs, rs, rp * rp));
     }
 
     /// Albedos, roughly, by which a lobe is chosen: of the facets and of the whitecaps.

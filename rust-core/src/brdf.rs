@@ -45,7 +45,7 @@ pub struct Facets<T: Real> {
     /// And across the wind.
     pub proposal_c: T,
     /// rho of Eqs. 62-63.
-    pub reflectance: Reflectance<T>,
+    pub reflectance: Reflectance<T::Wide>,
     /// The density is Gaussian in slopes, not in tilt angles.
     pub slope_measure: bool,
     /// Eq. 78 is applied.
@@ -64,9 +64,9 @@ struct Geometry<T: Real> {
     /// cos theta_i, cos theta_r (Eq. 60).
     pub cos: [T; 2],
     /// cos zeta (Eq. 61).
-    pub cos_zeta: T,
+    pub cos_zeta: T::Wide,
     /// cos xi (Eq. 71).
-    pub cos_xi: T,
+    pub cos_xi: T::Wide,
     /// Sine-like and cosine-like parts of the signed tilt xi_u from normal to half vector (Eqs. 69-71).
     pub tilt_u: [T::Wide; 2],
     /// And of xi_c.
@@ -76,19 +76,18 @@ struct Geometry<T: Real> {
 impl<T: Real> Facets<T> {
     #[inline(always)]
     fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> Geometry<T> {
-        let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
-        let length = T::max(dot(h, h).sqrt(), T::TINY);
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
         let [iw, ow, nw] = [i, o, n].map(|v| v.map(T::wide));
         let hw = [iw[0] + ow[0], iw[1] + ow[1], iw[2] + ow[2]];
+        let length = Real::max(dot(hw, hw).sqrt(), T::Wide::of(1e-300));
         let [hu, hc] = self.wind_frame(hw[0], hw[1]);
         let [nu, nc] = self.wind_frame(nw[0], nw[1]);
         let [xu, xc] = self.wind_frame(hw[0] * nw[2] - hw[2] * nw[0], hw[1] * nw[2] - hw[2] * nw[1]);
         let zz = hw[2] * nw[2];
         Geometry {
             cos: [dot(i, n), dot(o, n)],
-            cos_zeta: T::min(T::of(0.5) * length, T::of(1.0)),
-            cos_xi: dot(h, n) / length,
+            cos_zeta: Real::min(T::Wide::of(0.5) * length, T::Wide::of(1.0)),
+            cos_xi: dot(hw, nw) / length,
             tilt_u: [xu, zz + hu * nu],
             tilt_c: [xc, zz + hc * nc],
         }
@@ -117,7 +116,7 @@ impl<T: Real> Facets<T> {
         let g = self.geometry(i, o, n);
         let zero = T::of(0.0);
         let lit = T::lt(zero, g.cos[0]) & T::lt(zero, g.cos[1]);
-        let value = self.density(&g) * self.visible_reflectance(&g, i, o, n);
+        let value = T::min(self.density(&g), T::MAX) * self.visible_reflectance(&g, i, o, n);
         T::select(lit, T::min(value, T::MAX), zero)
     }
 
@@ -129,23 +128,23 @@ impl<T: Real> Facets<T> {
         let clamp = |x: T::Wide| Real::max(Real::min(x, far), -far);
         let u = clamp(-self.measure(g.tilt_u) / self.sigma_u);
         let c = clamp(self.measure(g.tilt_c) / self.sigma_c);
-        self.scale * self.tilt_density(u, c, g.cos_xi)
+        self.scale * T::narrow(self.tilt_density(u, c, g.cos_xi))
     }
 
     /// The same over its constants, for tilts U and C in standard deviations.
     #[inline(always)]
-    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, cos_xi: T) -> T {
+    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, cos_xi: T::Wide) -> T::Wide {
         let (u, c) = if self.as_printed { (u.abs(), c.abs()) } else { (u, c) };
         let cos2 = cos_xi * cos_xi;
-        let gauss = T::narrow(Real::exp(T::Wide::of(-0.5) * (u * u + c * c)));
-        let mut p = gauss / T::max(cos2 * cos2, T::TINY);
+        let gauss = Real::exp(T::Wide::of(-0.5) * (u * u + c * c));
+        let mut p = gauss / Real::max(cos2 * cos2, T::Wide::TINY);
         if !self.slope_measure && !self.as_printed {
-            let held = T::max(gauss * self.steep_gain, T::of(STEEP_FLOOR));
-            p = T::select(T::lt(cos_xi, self.steep_cos), T::min(p, held), p);
+            let held = Real::max(gauss * self.steep_gain.wide(), T::Wide::of(STEEP_FLOOR));
+            p = T::Wide::select(T::Wide::lt(cos_xi, self.steep_cos.wide()), Real::min(p, held), p);
         }
         if self.gram_charlier {
-            let correction = gram_charlier(self.c21, self.c03, T::narrow(u), T::narrow(c), self.as_printed);
-            p = p * T::max(correction, T::of(0.0));
+            let correction = gram_charlier(self.c21.wide(), self.c03.wide(), u, c, self.as_printed);
+            p = p * Real::max(correction, T::Wide::of(0.0));
         }
         p
     }
@@ -154,7 +153,7 @@ impl<T: Real> Facets<T> {
     #[inline(always)]
     fn visible_reflectance(&self, g: &Geometry<T>, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
         let [ci, cr] = g.cos;
-        let rho = self.reflectance.eval(g.cos_zeta);
+        let rho = T::narrow(self.reflectance.eval(g.cos_zeta));
         let one = T::of(1.0);
         let mut area = ci * cr;
         if self.shadowing {
@@ -258,8 +257,8 @@ impl Lobe<f64> {
                 proposal_u: T::of(f.proposal_u),
                 proposal_c: T::of(f.proposal_c),
                 reflectance: Reflectance {
-                    normal: T::of(f.reflectance.normal),
-                    ior2: T::of(f.reflectance.ior2),
+                    normal: T::Wide::of(f.reflectance.normal),
+                    ior2: T::Wide::of(f.reflectance.ior2),
                     exact: f.reflectance.exact,
                 },
                 slope_measure: f.slope_measure,

@@ -210,7 +210,8 @@ impl<T: Real> Lobe<T> {
             Parts { whitecaps: false, .. } => [one, zero],
             Parts { facets: false, .. } => [zero, one],
             _ => {
-                let albedo = self.facets.reflectance.schlick(cos) + T::of(FACET_ALBEDO_FLOOR);
+                let albedo =
+                    T::narrow(self.facets.reflectance.schlick(cos.wide())) + T::of(FACET_ALBEDO_FLOOR);
                 let facets = (one - self.whitecap_fraction) * albedo;
                 let whitecaps = T::of(WHITECAP_ALBEDO) * self.whitecap_fraction;
                 [facets, whitecaps].map(|x| x / (facets + whitecaps))
