@@ -36,22 +36,22 @@ Wind-roughened water (:monosp:`prob_water`)
  * - wind_speed
    - |float|
    - Wind speed in m/s at :monosp:`wind_height`; 0 is calm, 36 at 10 m the upper limit. (Default: 5)
-   - |exposed|
+   - |exposed| (where given)
 
  * - wind_height
    - |float|
    - Height in m at which the wind speed is measured, 0.1 to 100. (Default: 10)
-   - |exposed|
+   - |exposed| (where given)
 
  * - friction_velocity
    - |float|
    - Friction velocity in cm/s instead of the wind speed, 0 to 238.65.
-   - |exposed|
+   - |exposed| (where given)
 
  * - beaufort
    - |int|
    - Beaufort number instead of the wind speed, 0 to 12.
-   - |exposed|
+   - |exposed| (where given)
 
  * - wind_direction
    - |float|

@@ -14,7 +14,8 @@ typedef enum ProbWaterStatus {
   PROB_WATER_STATUS_OK = 0,
   // A parameter is unknown, of the wrong type, out of range, or excluded by another one.
   PROB_WATER_STATUS_PARAMETER = 1,
-  // A row's direction is not a finite unit vector, or a normal does not point up.
+  // A row's direction is not a finite unit vector, a normal does not point up, or a uniform number
+  // is outside [0, 1).
   PROB_WATER_STATUS_ROW = 2,
   // A pointer is null where it must not be, or a text is not UTF-8.
   PROB_WATER_STATUS_ARGUMENT = 3,

@@ -279,7 +279,8 @@ const BOUND_SLACK: f64 = 1.11;
 
 impl Facets<f64> {
     /// Whether [`Facets::visible_bound`] matters: scanned over both elevations, with the largest
-    /// reflectance (forward) and the rougher azimuth. Above w* = 9 cm/s it does not, and costs nothing.
+    /// reflectance (forward) and the rougher azimuth. Above w* = 9 cm/s (for an infinite footprint; below
+    /// for smaller ones) it does not, and costs nothing.
     pub(crate) fn needs_bound(&self) -> bool {
         const STEPS: i32 = 64;
         let spread = std::f64::consts::SQRT_2 * self.sigma_u.max(self.sigma_c);

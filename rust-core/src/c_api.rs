@@ -1,7 +1,7 @@
 //! The C interface: an opaque handle, status codes with a message, batch calls over arrays.
 //!
 //! Nothing panics across it. A configured `ProbWater` is immutable: any number of threads may use
-//! one at a time. Vectors are arrays of x, y, z triples, row after row.
+//! the same one at the same time. Vectors are arrays of x, y, z triples, row after row.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_double, c_float};
@@ -22,7 +22,8 @@ pub enum ProbWaterStatus {
     Ok = 0,
     /// A parameter is unknown, of the wrong type, out of range, or excluded by another one.
     Parameter = 1,
-    /// A row's direction is not a finite unit vector, or a normal does not point up.
+    /// A row's direction is not a finite unit vector, a normal does not point up, or a uniform number
+    /// is outside [0, 1).
     Row = 2,
     /// A pointer is null where it must not be, or a text is not UTF-8.
     Argument = 3,

@@ -19,7 +19,8 @@ pub enum Readings {
     /// With the corrections of docs/model.md.
     #[default]
     Corrected,
-    /// pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand.
+    /// pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand, and neither of the bounds
+    /// by which the corrected readings conserve energy ([`Facets::visible_bound`], steep facets).
     AsPrinted,
 }
 

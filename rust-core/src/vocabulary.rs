@@ -28,7 +28,7 @@ pub const ENTRIES: [Entry; 16] = [
     entry("friction_velocity", "cm/s", "", "friction velocity w* instead of wind_speed, 0 to 238.65"),
     entry("beaufort", "", "", "Beaufort number instead of wind_speed, 0 to 12"),
     entry("wind_direction", "degrees", "0", "azimuth the wind comes from, counter-clockwise from +x"),
-    entry("footprint", "m", "inf", "footprint D; shorter waves are facets; or inf"),
+    entry("footprint", "m", "inf", "footprint D: waves shorter than 2 D are facets; or inf"),
     entry("surface", "", "flat", "which surface the facets lie on: flat"),
     entry("wavelength", "micrometres", "0.55", "wavelength, 0.2 to 200"),
     entry("ior", "", "", "refractive index, 1 to 10; else Hale and Querry's at the wavelength"),

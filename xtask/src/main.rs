@@ -18,9 +18,10 @@ The commands of prob-water, each run as `cargo xtask <command>`:
 
   setup             create .venv and install validation/requirements.txt in it
   build [--out DIR] build the Mitsuba plugin into DIR/plugins (default: target/mitsuba)
-  render [--quality preview|final] [--variant V]
-                    build, then render the review images into out/
+  render [--quality preview|final] [--variant V] [--only NAME]
+                    build, then render the review images into out/ (options of validation/render.py)
   test              run every check: Rust, C, plugin, Python, style
+  verify            the long campaigns: more samples, adversarial input, the tables of docs/float32.md
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and print the throughput table (options of validation/bench.py)
@@ -55,6 +56,7 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["render", ..] => render::render(&arguments[1..])?,
         ["bench", ..] => bench::bench(&arguments[1..])?,
         ["test"] => test::test()?,
+        ["verify"] => test::verify()?,
         ["header"] => c_api::header(false)?,
         ["header", "--check"] => c_api::header(true)?,
         ["c-test"] => c_api::c_test()?,

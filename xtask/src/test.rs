@@ -69,13 +69,31 @@ fn cargo_test() -> Result<Outcome> {
 }
 
 fn pytest() -> Result<Outcome> {
+    run_pytest(&[])?;
+    Ok(Passed)
+}
+
+fn run_pytest(options: &[&str]) -> Result<()> {
     util::run(
         util::command(setup::python())
             .args(["-m", "pytest", "validation", "-q", "-rs", "-p", "no:cacheprovider"])
+            .args(options)
             .env("PYTHONDONTWRITEBYTECODE", "1"),
         "pytest",
-    )?;
-    Ok(Passed)
+    )
+}
+
+/// The campaigns that are too long for every change: the Python checks with many more samples and the live peer, and
+/// the error table of docs/float32.md.
+pub fn verify() -> Result<()> {
+    c_api::c_test()?;
+    build::build(&build::default_out())?;
+    setup::peer()?;
+    run_pytest(&["--full", "-s"])?;
+    util::run(
+        util::command(setup::python()).arg("validation/float32_errors.py"),
+        "validation/float32_errors.py",
+    )
 }
 
 fn cargo_fmt() -> Result<Outcome> {
