@@ -15,7 +15,7 @@ fn arguments() {
         ("wind --wind-direction north", &["wind_direction", "north"]),
         ("wind --wind-direction nan", &["wind_direction", "NaN"]),
         ("wind --wind-speed -1", &["wind_speed", "-1"]),
-        ("wind --wind-speed 36.1", &["wind_speed", "36.1", "36 m/s"]),
+        ("wind --wind-speed 36.1", &["wind_speed", "36.1", "36.00 m/s"]),
         ("wind --friction-velocity 239", &["friction_velocity", "239", "238.65"]),
         ("wind --beaufort 13", &["beaufort", "13", "0 to 12"]),
         ("wind --beaufort 2.5", &["beaufort", "2.5"]),
