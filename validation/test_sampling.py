@@ -57,37 +57,6 @@ class TiltDomain:
         return 4 * dr.dot(self.i, h) * h.z**3 * scale[0] * scale[1]
 
 
-@pytest.mark.parametrize("parameters", CONFIGURATIONS, ids=lambda p: "-".join(map(str, p.values())))
-@pytest.mark.parametrize("incidence", INCIDENCES)
-def test_chi_square(use, parameters, incidence):
-    """45 configurations, calm to gale, incidence 0 to 85 degrees: of the facets' lobe in tilts, so that calm
-    water is resolved as well."""
-    mi = use("llvm_ad_rgb")
-    import drjit as dr
-    from mitsuba.chi2 import ChiSquareTest
-
-    i = direction(incidence, 70.0)
-    domain = TiltDomain(mi, i, Core(**parameters), parameters.get("wind_direction", 0.0))
-    bsdf = mi.load_dict({"type": "prob_water", **parameters})
-    context = mi.BSDFContext()
-
-    def interaction(count):
-        si = dr.zeros(mi.SurfaceInteraction3f, count)
-        si.wi = mi.Vector3f([float(x) for x in i])
-        si.sh_frame = mi.Frame3f([1, 0, 0], [0, 1, 0], [0, 0, 1])
-        return si
-
-    def sample(u):
-        drawn, _ = bsdf.sample(context, interaction(dr.width(u)), u[0], mi.Point2f(u[1], u[2]))
-        return drawn.wo, dr.select(drawn.pdf > 0, mi.Float(1), 0)
-
-    def pdf(o):
-        return bsdf.pdf(context, interaction(dr.width(o)), o) * domain.jacobian(o)
-
-    test = ChiSquareTest(domain, sample, pdf, sample_dim=3, sample_count=1_000_000, res=101, ires=16)
-    assert test.run(0.01, test_count=len(CONFIGURATIONS) * len(INCIDENCES), quiet=True), test.messages
-
-
 def interaction(mi, i, count):
     """Interactions with the source in the direction `i` of a frame that is set."""
     import drjit as dr

@@ -32,7 +32,7 @@ template <typename Float_> struct Lobe {
     static constexpr float Tiny = 1.17549435e-38f, Small = 1e-9f;
     static constexpr float Largest = 3.40282347e+38f;
     /// As in the core's brdf.rs and sampling.rs.
-    static constexpr float SteepFloor = 1e-6f, WhitecapAlbedo = 0.22f, FacetAlbedoFloor = 0.01f, Grazing = 1e-12f;
+    static constexpr float SteepFloor = 1e-6f, FacetAlbedoFloor = 0.01f, Grazing = 1e-12f;
 
     /// Numbers are data, so that a change does not compile new kernels; decisions are made while tracing.
     Wide cos_wind, sin_wind, inv_sigma_u, inv_sigma_c, ior2;
@@ -156,7 +156,8 @@ template <typename Float_> struct Lobe {
         pdf = dr::minimum(pdf, Largest);
         if (parts.whitecaps) {
             auto [facets, whitecaps] = albedos(g.cos_i);
-            pdf = dr::fmadd(facets, pdf, whitecaps * g.cos_o * dr::InvPi<float>) / (facets + whitecaps);
+            pdf = dr::fmadd(facets, pdf, whitecaps * g.cos_o * dr::InvPi<float>) /
+                  dr::maximum(facets + whitecaps, Tiny);
         }
         return dr::select(g.lit, pdf, 0.f);
     }
@@ -174,7 +175,7 @@ template <typename Float_> struct Lobe {
         if (parts.whitecaps) {
             // u0 over the facets' share.
             auto [facets, whitecaps] = albedos(i.z());
-            choice = u0 * (facets + whitecaps) / facets;
+            choice = u0 * (facets + whitecaps) / dr::maximum(facets, Tiny);
             whitecap = choice >= 1.f;
             choice = dr::minimum(choice, 1.f);
         }
@@ -418,15 +419,15 @@ private:
             return schlick(cos_zeta);
         using S = dr::scalar_t<T>;
         T cos(cos_zeta), n2(ior2), excess = n2 - S(1), g = dr::sqrt(dr::fmadd(cos, cos, excess)), s = cos + g,
-            p = dr::fmadd(n2, cos, g), rs = excess / (s * s),
-            rp = excess * dr::fmsub(n2 + S(1), cos * cos, T(S(1))) / (p * p);
+            p = dr::fmadd(n2, cos, g), rs = excess / dr::maximum(s * s, S(Tiny)),
+            rp = excess * dr::fmsub(n2 + S(1), cos * cos, T(S(1))) / dr::maximum(p * p, S(Tiny));
         return Float(S(.5) * dr::fmadd(rs, rs, rp * rp));
     }
 
     /// Albedos, roughly, by which a lobe is chosen: of the facets and of the whitecaps.
     std::pair<Float, Float> albedos(const Float &cos) const {
         Float facets = (1.f - whitecap_fraction) * (schlick(cos) + FacetAlbedoFloor);
-        return { facets, WhitecapAlbedo * whitecap_fraction };
+        return { facets, drjit::Pi<float> * whitecap_brdf * whitecap_fraction };
     }
 };
 

@@ -17,6 +17,7 @@ struct ProbWaterSample {
     float f;
     bool whitecap;
 };
+static_assert(sizeof(ProbWaterSample) == 24, "as the core's Sample");
 float prob_water_bsdf_eval(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
 float prob_water_bsdf_pdf(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
 void prob_water_bsdf_sample(const prob_water::Water *, uint32_t parts, const float i[3], const float u[3],
@@ -76,7 +77,7 @@ Wind-roughened water (:monosp:`prob_water`)
 
  * - ior
    - |float|
-   - Refractive index, 1 to 10. (Default: Hale and Querry's at the wavelength, with sea salt)
+   - Refractive index, 1 to 4. (Default: Hale and Querry's at the wavelength, with sea salt)
    - |exposed| (where given)
 
  * - water
@@ -188,7 +189,7 @@ public:
             weight = m_lobe.eval(g, si.wi, bs.wo, parts) / bs.pdf;
         } else {
             float u[3] = { sample1, sample2.x(), sample2.y() };
-            ProbWaterSample s;
+            ProbWaterSample s{};
             prob_water_bsdf_sample(&*m_water, parts.bits(), si.wi.data(), u, &s);
             bs.wo = Vector3f(s.direction[0], s.direction[1], s.direction[2]);
             bs.pdf = s.pdf;
@@ -211,7 +212,7 @@ public:
         if (unlikely(parts.none() || dr::none_or<false>(active)))
             return 0.f;
         if constexpr (dr::is_jit_v<Float>)
-            return spectrum(m_lobe.eval(m_lobe.geometry(si.wi, wo), si.wi, wo, parts)) & active;
+            return spectrum(eval_pdf(si.wi, wo, parts, false).first) & active;
         else
             return spectrum(prob_water_bsdf_eval(&*m_water, parts.bits(), si.wi.data(), wo.data())) & active;
     }
@@ -237,16 +238,18 @@ public:
             Parts parts = enabled(ctx);
             if (parts.none())
                 return { 0.f, 0.f };
-            auto g = m_lobe.geometry(si.wi, wo);
-            return { spectrum(m_lobe.eval(g, si.wi, wo, parts)) & active,
-                     dr::select(active, m_lobe.pdf(g, si.wi, parts), 0.f) };
+            auto [value, pdf] = eval_pdf(si.wi, wo, parts, true);
+            return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
         } else {
             return { eval(ctx, si, wo, active), pdf(ctx, si, wo, active) };
         }
     }
 
     Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f & /*si*/, Mask active) const override {
-        return spectrum(Float(m_whitecap_albedo)) & active;
+        if constexpr (dr::is_jit_v<Float>)
+            return spectrum(m_lobe.whitecap_fraction * m_lobe.whitecap_brdf * dr::Pi<ScalarFloat>) & active;
+        else
+            return spectrum(m_whitecap_albedo) & active;
     }
 
     std::string to_string() const override {
@@ -312,6 +315,17 @@ private:
             m_components.push_back(BSDFFlags::DiffuseReflection | BSDFFlags::FrontSide);
             m_flags = m_flags | m_components[1];
         }
+    }
+
+    /// Traced f cos(theta_o) and, if wanted, the density. Only Gram-Charlier's polynomial asks for digits to spare.
+    std::pair<Float, Float> eval_pdf(const Vector3f &wi, const Vector3f &wo, Parts parts, bool with_pdf) const {
+        auto run = [&](auto type) {
+            using T = decltype(type);
+            auto g = m_lobe.template geometry<T>(wi, wo);
+            return std::pair<Float, Float>(m_lobe.template eval<T>(g, wi, wo, parts),
+                                           with_pdf ? m_lobe.pdf(g, wi, parts) : Float(0.f));
+        };
+        return m_lobe.gram_charlier ? run(typename Lobe::Wide()) : run(Float());
     }
 
     Parts enabled(const BSDFContext &ctx) const {

@@ -7,8 +7,8 @@ use prob_water::{Error, Lobe, Sample};
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
-    /// The coefficients that the traced variants evaluate: `prob_water::Lobe`, in float32, and the
-    /// polynomial of the shadowing function.
+    /// The coefficients that the traced variants evaluate: `prob_water::Lobe<f32>` and the polynomial of
+    /// the shadowing function.
     struct Coefficients {
         cos_wind: f64,
         sin_wind: f64,
@@ -17,7 +17,6 @@ mod ffi {
         scale: f32,
         c21: f32,
         c03: f32,
-        steep_cos: f32,
         steep_gain: f32,
         sigma_shadow: f32,
         bound: f32,
@@ -104,7 +103,6 @@ impl Water {
             scale: f.scale,
             c21: f.c21,
             c03: f.c03,
-            steep_cos: f.steep_cos,
             steep_gain: f.steep_gain,
             sigma_shadow: f.sigma_shadow,
             bound: f.bound,

@@ -102,6 +102,7 @@ enum ProbWaterStatus prob_water_summary(const struct ProbWater *sea, struct Prob
 //
 // # Safety
 // `sea` comes from `prob_water_configure`; the vectors hold `rows` triples, `f` `rows` numbers.
+// Outputs overlap neither inputs nor each other.
 enum ProbWaterStatus prob_water_eval(const struct ProbWater *sea,
                                      size_t rows,
                                      const double *to_source,
@@ -137,7 +138,7 @@ enum ProbWaterStatus prob_water_pdf(const struct ProbWater *sea,
 //
 // # Safety
 // `sea` comes from `prob_water_configure`; `to_source`, `uniforms` and `to_observer` hold `rows`
-// triples, `pdf` and `f` `rows` numbers.
+// triples, `pdf` and `f` `rows` numbers. Outputs overlap neither inputs nor each other.
 enum ProbWaterStatus prob_water_sample(const struct ProbWater *sea,
                                        size_t rows,
                                        const double *to_source,

@@ -307,6 +307,7 @@ unsafe fn with_sea(
 ///
 /// # Safety
 /// `sea` comes from `prob_water_configure`; the vectors hold `rows` triples, `f` `rows` numbers.
+/// Outputs overlap neither inputs nor each other.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn prob_water_eval(
     sea: *const ProbWater,
@@ -364,7 +365,7 @@ pub unsafe extern "C" fn prob_water_pdf(
 ///
 /// # Safety
 /// `sea` comes from `prob_water_configure`; `to_source`, `uniforms` and `to_observer` hold `rows`
-/// triples, `pdf` and `f` `rows` numbers.
+/// triples, `pdf` and `f` `rows` numbers. Outputs overlap neither inputs nor each other.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn prob_water_sample(
     sea: *const ProbWater,

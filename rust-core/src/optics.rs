@@ -89,8 +89,8 @@ impl<T: Real> Reflectance<T> {
         let g = T::sqrt(excess + cos * cos);
         let s = cos + g;
         let p = self.ior2 * cos + g;
-        let rs = excess / (s * s);
-        let rp = excess * ((self.ior2 + one) * cos * cos - one) / (p * p);
+        let rs = excess / T::max(s * s, T::TINY);
+        let rp = excess * ((self.ior2 + one) * cos * cos - one) / T::max(p * p, T::TINY);
         T::of(0.5) * (rs * rs + rp * rp)
     }
 }

@@ -126,7 +126,7 @@ impl Parameters {
             "0.2 to 200 micrometres",
         )?;
         if let Some(ior) = self.ior {
-            require("ior", ior, (1.0..=10.0).contains(&ior), "1 to 10")?;
+            require("ior", ior, (1.0..=4.0).contains(&ior), "1 to 4")?;
         }
         let ior = self.ior.unwrap_or_else(|| {
             let salt = if self.water == Body::Ocean { optics::SEA_SALT } else { 0.0 };

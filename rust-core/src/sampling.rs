@@ -17,8 +17,6 @@ use crate::Real;
 use crate::brdf::{Facets, Lobe, Parts};
 use crate::real::{Vec3, dot};
 
-/// Reflectance of a whitecap below 0.6 micrometres: its share in choosing a lobe.
-const WHITECAP_ALBEDO: f64 = 0.22;
 /// Keeps the facets' share positive where they hardly reflect.
 const FACET_ALBEDO_FLOOR: f64 = 0.01;
 /// Smallest cosine to the source the proposal distinguishes.
@@ -213,8 +211,8 @@ impl<T: Real> Lobe<T> {
                 let albedo =
                     T::narrow(self.facets.reflectance.schlick(cos.wide())) + T::of(FACET_ALBEDO_FLOOR);
                 let facets = (one - self.whitecap_fraction) * albedo;
-                let whitecaps = T::of(WHITECAP_ALBEDO) * self.whitecap_fraction;
-                [facets, whitecaps].map(|x| x / (facets + whitecaps))
+                let whitecaps = T::of(std::f64::consts::PI) * self.whitecap_brdf * self.whitecap_fraction;
+                [facets, whitecaps].map(|x| x / T::max(facets + whitecaps, T::TINY))
             }
         }
     }

@@ -31,7 +31,7 @@ pub const ENTRIES: [Entry; 16] = [
     entry("footprint", "m", "inf", "footprint D: waves shorter than 2 D are facets; or inf"),
     entry("surface", "", "flat", "which surface the facets lie on: flat"),
     entry("wavelength", "micrometres", "0.55", "wavelength, 0.2 to 200"),
-    entry("ior", "", "", "refractive index, 1 to 10; else Hale and Querry's at the wavelength"),
+    entry("ior", "", "", "refractive index, 1 to 4; else Hale and Querry's at the wavelength"),
     entry("water", "", "ocean", "ocean or fresh: sea salt raises the index by 0.006"),
     entry("fresnel", "", "schlick", "schlick (Eq. 63) or exact"),
     entry(

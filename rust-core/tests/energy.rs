@@ -48,6 +48,19 @@ fn flat_sea_albedo_is_at_most_one() {
     assert!(worst.0 <= 1.0, "{worst:?}");
 }
 
+/// The largest index allowed, far from water's, reflects no more than came in either.
+#[test]
+fn albedo_at_the_largest_index() {
+    for w in [0.0, 2.0, 24.0, 150.0, 238.65] {
+        let water = water(w, |p| p.ior = Some(4.0));
+        for theta in [0.0, 80.0, 85.0, 88.0, 89.7] {
+            let i = direction(theta, 0.0);
+            let albedo = integrate(&water.lobe, i, UP, 250, |o| water.lobe.eval(i, o, UP) * o[2]);
+            assert!(albedo <= 1.0, "w* {w}, {theta} deg: {albedo}");
+        }
+    }
+}
+
 /// Without the bound on rho G the report's equations reflect more than came in: the reading is needed.
 #[test]
 fn the_bound_on_calm_water_is_needed() {
@@ -128,8 +141,11 @@ fn reciprocal_and_finite_about_any_normal() {
 fn finite_at_the_edges() {
     let tiny = [0.0, -0.0, 1e-45, -1e-45, 1e-38, 1e-20, 1e-7, 1e-3];
     for w in [0.0, 0.01, 8.0, 238.65] {
-        for shadowing in [true, false] {
-            let single: Lobe<f32> = water(w, |p| p.shadowing = shadowing).lobe.cast();
+        for (shadowing, fresnel, ior) in
+            [(true, Fresnel::Schlick, 1.33), (false, Fresnel::Exact, 1.0), (false, Fresnel::Schlick, 1.0)]
+        {
+            let single: Lobe<f32> =
+                water(w, |p| (p.shadowing, p.fresnel, p.ior) = (shadowing, fresnel, Some(ior))).lobe.cast();
             for zi in tiny {
                 for zo in tiny {
                     for x in [-1.0f32, 1.0] {

@@ -21,7 +21,7 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   render [--quality preview|final] [--variant V] [--only NAME]
                     build, then render the review images into out/ (options of validation/render.py)
   test              run every check: Rust, C, plugin, Python, style
-  verify            the long campaigns: more samples, adversarial input, the tables of docs/float32.md
+  verify            the long campaigns: more samples, the live peer, the table docs/float32.md
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and print the throughput table (options of validation/bench.py)
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
 
 fn dispatch(arguments: &[String]) -> Result<()> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    if words.iter().any(|word| ["-h", "--help"].contains(word)) {
+    if words.first().is_some_and(|word| ["-h", "--help"].contains(word)) {
         println!("{HELP}");
         return Ok(());
     }

@@ -64,7 +64,7 @@ pub fn test() -> Result<()> {
 }
 
 fn cargo_test() -> Result<Outcome> {
-    util::run(util::cargo().args(["test", "--workspace"]), "cargo test")?;
+    util::run(util::cargo().args(["test", "--workspace", "--all-features"]), "cargo test")?;
     Ok(Passed)
 }
 
@@ -108,7 +108,8 @@ fn cargo_clippy() -> Result<Outcome> {
     if !util::succeeds(util::cargo().args(["clippy", "--version"])) {
         return Ok(Skipped("not installed"));
     }
-    let arguments = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    let arguments =
+        ["clippy", "--quiet", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"];
     util::run(util::cargo().args(arguments), "cargo clippy")?;
     Ok(Passed)
 }

@@ -7,7 +7,7 @@ fn arguments() {
         ("", &["subcommand"][..]),
         ("breeze", &["breeze"]),
         ("wind --gust 3", &["--gust"]),
-        ("wind --ior 0.9", &["ior", "0.9", "1 to 10"]),
+        ("wind --ior 0.9", &["ior", "0.9", "1 to 4"]),
         ("wind --ior 1.3 --ior 1.4", &["--ior"]),
         ("wind --footprint", &["--footprint"]),
         ("wind --footprint 0", &["footprint", "0 m"]),
