@@ -10,6 +10,17 @@
 
 namespace prob_water {
 
+/// The larger and the smaller of two numbers, the second where the first is none: one comparison, where
+/// Dr.Jit's own take several to pass on what is not a number.
+template <typename A, typename B> A larger(const A &a, const B &b) {
+    A c(b);
+    return drjit::select(a > c, a, c);
+}
+template <typename A, typename B> A smaller(const A &a, const B &b) {
+    A c(b);
+    return drjit::select(a < c, a, c);
+}
+
 /// Which of the two lobes take part.
 struct Parts {
     bool facets, whitecaps;
@@ -93,9 +104,9 @@ template <typename Float_> struct Lobe {
         g.cos_i = i.z();
         g.cos_o = o.z();
         g.lit = g.cos_i > 0.f && g.cos_o > 0.f;
-        g.cos_zeta = dr::minimum(.5f * dr::norm(i + o), 1.f);
+        g.cos_zeta = smaller(.5f * dr::norm(i + o), 1.f);
 
-        T z = dr::maximum(T(i.z()) + T(o.z()), dr::scalar_t<T>(Small));
+        T z = larger(T(i.z()) + T(o.z()), dr::scalar_t<T>(Small));
         auto [u, c] = wind_frame(T(i.x()) + T(o.x()), T(i.y()) + T(o.y()));
         Float hz(z);
         Float inv_hz = dr::rcp(hz);
@@ -104,7 +115,7 @@ template <typename Float_> struct Lobe {
             g.tilt_c = quotient(c, z, inv_hz);
         } else {
             // Both quotients of min and max by one reciprocal.
-            T abs_u = dr::abs(u), abs_c = dr::abs(c), most_u = dr::maximum(abs_u, z), most_c = dr::maximum(abs_c, z);
+            T abs_u = dr::abs(u), abs_c = dr::abs(c), most_u = larger(abs_u, z), most_c = larger(abs_c, z);
             Float m_u(most_u), m_c(most_c), inv = dr::rcp(m_u * m_c);
             g.tilt_u = angle(u, z, abs_u, most_u, Float(inv * m_c));
             g.tilt_c = angle(c, z, abs_c, most_c, Float(inv * m_u));
@@ -121,7 +132,7 @@ template <typename Float_> struct Lobe {
         namespace dr = drjit;
         Float f = 0.f;
         if (parts.facets) {
-            f = dr::minimum(facets(g, i, o), Largest);
+            f = smaller(facets(g, i, o), Largest);
             if (parts.whitecaps)
                 f = dr::fmadd(whitecap_fraction, whitecap_brdf - f, f);
             else
@@ -147,17 +158,17 @@ template <typename Float_> struct Lobe {
         Float z_u = g.slope_u * inv_proposal_u, z_c = g.slope_c * inv_proposal_c,
               z2 = dr::square(tilt_over_slope) * dr::fmadd(z_u, z_u, z_c * z_c),
               slanted = dr::fmadd(g.slope_u, p.i_u, g.slope_c * p.i_c) * p.inv_cos,
-              shown = dr::maximum(1.f + slanted, Small),
+              shown = larger(1.f + slanted, Small),
               beyond = dr::fmsub(slanted, tilt_over_slope, 1.f),
-              gauss = dr::exp(-.5f * z2) * dr::minimum(shown, 2.f),
-              tail = dr::exp(dr::minimum(dr::fmsub(dr::square(p.inv_d), beyond, .5f * z2), 0.f)) * beyond,
+              gauss = dr::exp(-.5f * z2) * smaller(shown, 2.f),
+              tail = dr::exp(smaller(dr::fmsub(dr::square(p.inv_d), beyond, .5f * z2), 0.f)) * beyond,
               pdf = (gauss + dr::select(beyond > 0.f, tail, 0.f)) * jacobian * p.inv_cos /
                     (proposal_norm * (1.f + p.tail) * shown);
-        pdf = dr::minimum(pdf, Largest);
+        pdf = smaller(pdf, Largest);
         if (parts.whitecaps) {
             auto [facets, whitecaps] = albedos(g.cos_i);
             pdf = dr::fmadd(facets, pdf, whitecaps * g.cos_o * dr::InvPi<float>) /
-                  dr::maximum(facets + whitecaps, Tiny);
+                  larger(facets + whitecaps, Tiny);
         }
         return dr::select(g.lit, pdf, 0.f);
     }
@@ -175,15 +186,15 @@ template <typename Float_> struct Lobe {
         if (parts.whitecaps) {
             // u0 over the facets' share.
             auto [facets, whitecaps] = albedos(i.z());
-            choice = u0 * (facets + whitecaps) / dr::maximum(facets, Tiny);
+            choice = u0 * (facets + whitecaps) / larger(facets, Tiny);
             whitecap = choice >= 1.f;
-            choice = dr::minimum(choice, 1.f);
+            choice = smaller(choice, 1.f);
         }
 
         Proposal p = proposal(i);
         Float scaled = choice * (1.f + p.tail);
         Mask in_tail = scaled < p.tail;
-        Float rest = dr::select(in_tail, scaled / dr::maximum(p.tail, Tiny), scaled - p.tail);
+        Float rest = dr::select(in_tail, scaled / larger(p.tail, Tiny), scaled - p.tail);
         Mask turns = in_tail;
         if (parts.whitecaps)
             turns &= !whitecap;
@@ -208,7 +219,7 @@ template <typename Float_> struct Lobe {
         // Kept, or turned around, in proportion to what the two show the source.
         Float h_u = t_u * sin_over, h_c = t_c * sin_over,
               level_area = cos_xi * i.z(), slanted = dr::fmadd(h_u, p.i_u, h_c * p.i_c),
-              a = dr::maximum(level_area + slanted, 0.f), b = dr::maximum(level_area - slanted, 0.f);
+              a = larger(level_area + slanted, 0.f), b = larger(level_area - slanted, 0.f);
         Mask turn = !in_tail && rest * (a + b) < b;
         h_u = dr::select(turn, -h_u, h_u);
         h_c = dr::select(turn, -h_c, h_c);
@@ -232,10 +243,10 @@ private:
         namespace dr = drjit;
         Proposal p;
         std::tie(p.i_u, p.i_c) = wind_frame(i.x(), i.y());
-        p.inv_cos = dr::rcp(dr::maximum(i.z(), Grazing));
+        p.inv_cos = dr::rcp(larger(i.z(), Grazing));
         p.u = p.i_u * proposal_u * p.inv_cos;
         p.c = p.i_c * proposal_c * p.inv_cos;
-        Float d2 = dr::maximum(dr::fmadd(p.u, p.u, p.c * p.c), Tiny);
+        Float d2 = larger(dr::fmadd(p.u, p.u, p.c * p.c), Tiny);
         p.inv_d = dr::rsqrt(d2);
         p.tail = d2 * p.inv_d * dr::exp(-.5f * p.inv_d * p.inv_d) * 0.3989422804f;
         return p;
@@ -249,7 +260,7 @@ private:
 
     static Float radius2(const Float &u) {
         namespace dr = drjit;
-        return dr::maximum(-2.f * dr::log(dr::maximum(1.f - u, Tiny)), 0.f);
+        return larger(-2.f * dr::log(larger(1.f - u, Tiny)), 0.f);
     }
 
     /// Components along W_u and W_c (Eq. 68).
@@ -266,10 +277,10 @@ private:
         using S = dr::scalar_t<T>;
         T wide_u = -g.tilt_u * T(inv_sigma_u), wide_c = g.tilt_c * T(inv_sigma_c),
           wide_u2 = wide_u * wide_u, wide_c2 = wide_c * wide_c,
-          exponent = dr::maximum((wide_u2 + wide_c2) * S(-.5 / dr::LogTwo<double>), S(-1e4));
+          exponent = larger((wide_u2 + wide_c2) * S(-.5 / dr::LogTwo<double>), S(-1e4));
         // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
-        Float u = dr::clip(Float(wide_u), -1e3f, 1e3f), c = dr::clip(Float(wide_c), -1e3f, 1e3f),
-              u2 = dr::minimum(Float(wide_u2), 1e6f), c2 = dr::minimum(Float(wide_c2), 1e6f);
+        Float u = larger(smaller(Float(wide_u), 1e3f), -1e3f), c = larger(smaller(Float(wide_c), 1e3f), -1e3f),
+              u2 = smaller(Float(wide_u2), 1e6f), c2 = smaller(Float(wide_c2), 1e6f);
         if (as_printed) {
             u = dr::abs(u);
             c = dr::abs(c);
@@ -281,7 +292,7 @@ private:
         Float gauss = p, inv_cos4 = dr::square(g.inv_cos2_xi);
         p *= inv_cos4;
         if (!slope_measure && !as_printed)
-            p = dr::select(inv_cos4 > steep_gain, dr::minimum(p, dr::maximum(gauss * steep_gain, SteepFloor)), p);
+            p = dr::select(inv_cos4 > steep_gain, smaller(p, larger(gauss * steep_gain, SteepFloor)), p);
         if (gram_charlier) {
             Float c3 = as_printed ? Float(c2 - 1.f) : Float((c2 - 1.f) * u);
             Float k = dr::fmadd(-.5f * c21, c3, 1.f);
@@ -289,7 +300,7 @@ private:
             k = dr::fmadd(.40f / 24.f, dr::fmadd(c2, c2 - 6.f, 3.f), k);
             k = dr::fmadd((.12f / 4.f) * (c2 - 1.f), u2 - 1.f, k);
             k = dr::fmadd(.23f / 24.f, dr::fmadd(u2, u2 - 6.f, 3.f), k);
-            p *= dr::maximum(k, 0.f);
+            p *= larger(k, 0.f);
         }
 
         // cos theta_i cos theta_r/G as area/scale (Eqs. 61-67), at least what the facets themselves hide where
@@ -303,9 +314,9 @@ private:
         if (bounded) {
             auto [h_i, h_o] = hidden(g.cos_i, spread(i), g.cos_o, spread(o));
             Float v_i = g.cos_i + h_i.area / h_i.over, v_o = g.cos_o + h_o.area / h_o.over;
-            area = dr::maximum(area, over * rho / bound * dr::maximum(v_i * g.cos_o, v_o * g.cos_i));
+            area = larger(area, over * rho / bound * larger(v_i * g.cos_o, v_o * g.cos_i));
         }
-        return p * (rho * scale * over) / dr::maximum(area, Tiny);
+        return p * (rho * scale * over) / larger(area, Tiny);
     }
 
     static Float sine(const Float &cos) {
@@ -328,8 +339,8 @@ private:
     /// The same of two directions, for spread = sigma sin, by one reciprocal.
     std::pair<Hidden, Hidden> hidden(const Float &cos_i, Float s_i, const Float &cos_o, Float s_o) const {
         namespace dr = drjit;
-        s_i = dr::maximum(s_i, Small);
-        s_o = dr::maximum(s_o, Small);
+        s_i = larger(s_i, Small);
+        s_o = larger(s_o, Small);
         Float inv = dr::rcp(s_i * s_o);
         return { hidden(cos_i * s_o * inv, s_i), hidden(cos_o * s_i * inv, s_o) };
     }
@@ -338,7 +349,7 @@ private:
     /// derivatives.
     Hidden hidden(const Float &nu, const Float &spread) const {
         namespace dr = drjit;
-        Float x = dr::minimum(nu, 3.6f), p = ierfc[6] * x;
+        Float x = smaller(nu, 3.6f), p = ierfc[6] * x;
         for (int k = 5; k >= 0; --k)
             p = (p + ierfc[k]) * x;
         Float p2 = dr::square(p + 1.f), p4 = p2 * p2;
@@ -376,7 +387,7 @@ private:
     /// atan(t)/t of t^2.
     static Float atan_over(const Float &t2) {
         namespace dr = drjit;
-        Float inv_t = dr::rsqrt(dr::maximum(t2, Tiny));
+        Float inv_t = dr::rsqrt(larger(t2, Tiny));
         Mask steep = t2 > 1.f;
         Float x2 = dr::select(steep, dr::square(inv_t), t2), over = dr::fmadd(x2, atan_rest(x2), 1.f);
         return dr::select(steep, dr::fmsub(dr::Pi<float> * .5f, inv_t, over * x2), over);
@@ -398,7 +409,7 @@ private:
     static T angle(const T &sine, const T &cosine, const T &abs_sine, const T &most, const Float &inv_most) {
         namespace dr = drjit;
         using S = dr::scalar_t<T>;
-        T x = quotient(T(dr::minimum(abs_sine, cosine)), most, inv_most);
+        T x = quotient(T(smaller(abs_sine, cosine)), most, inv_most);
         Float t(x), t2 = t * t;
         T angle = x + T(t * t2 * atan_rest(t2));
         angle = dr::select(abs_sine > cosine, S(.5 * dr::Pi<double>) - angle, angle);
@@ -408,7 +419,7 @@ private:
     /// rho of Eq. 63.
     Float schlick(const Float &cos) const {
         namespace dr = drjit;
-        Float m = dr::maximum(1.f - cos, 0.f), m2 = m * m;
+        Float m = larger(1.f - cos, 0.f), m2 = m * m;
         return dr::fmadd(1.f - normal_reflectance, m2 * m2 * m, normal_reflectance);
     }
 
@@ -419,8 +430,8 @@ private:
             return schlick(cos_zeta);
         using S = dr::scalar_t<T>;
         T cos(cos_zeta), n2(ior2), excess = n2 - S(1), g = dr::sqrt(dr::fmadd(cos, cos, excess)), s = cos + g,
-            p = dr::fmadd(n2, cos, g), rs = excess / dr::maximum(s * s, S(Tiny)),
-            rp = excess * dr::fmsub(n2 + S(1), cos * cos, T(S(1))) / dr::maximum(p * p, S(Tiny));
+            p = dr::fmadd(n2, cos, g), rs = excess / larger(s * s, S(Tiny)),
+            rp = excess * dr::fmsub(n2 + S(1), cos * cos, T(S(1))) / larger(p * p, S(Tiny));
         return Float(S(.5) * dr::fmadd(rs, rs, rp * rp));
     }
 
