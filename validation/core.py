@@ -12,10 +12,10 @@ LIBRARY = ROOT / "target/release/libprob_water.so"
 def _load():
     if not LIBRARY.exists():
         raise FileNotFoundError(f"{LIBRARY} is missing: run `cargo xtask c-test`")
-    library = ctypes.CDLL(str(LIBRARY))
+    capi = ctypes.CDLL(str(LIBRARY))
     pointer, text, size = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t
-    library.prob_water_last_error.restype = text
-    library.prob_water_options_new.restype = pointer
+    capi.prob_water_last_error.restype = text
+    capi.prob_water_options_new.restype = pointer
     for name, arguments in {
         "options_set": [pointer, text, text],
         "configure": [pointer, ctypes.POINTER(pointer)],
@@ -26,38 +26,38 @@ def _load():
         "pdf": [pointer, size, pointer, pointer, pointer, pointer],
         "sample": [pointer, size] + [pointer] * 5,
     }.items():
-        getattr(library, f"prob_water_{name}").argtypes = arguments
-    return library
+        getattr(capi, f"prob_water_{name}").argtypes = arguments
+    return capi
 
 
 class Core:
     """A configured sea. Directions are arrays of shape (n, 3)."""
 
-    library = None
+    capi = None
 
     def __init__(self, **parameters):
-        Core.library = Core.library or _load()
-        options, self.handle = self.library.prob_water_options_new(), ctypes.c_void_p()
+        Core.capi = Core.capi or _load()
+        options, self.handle = self.capi.prob_water_options_new(), ctypes.c_void_p()
         try:
             for name, value in parameters.items():
                 text = str(value).lower() if isinstance(value, bool) else str(value)
-                self._check(self.library.prob_water_options_set(options, name.encode(), text.encode()))
-            self._check(self.library.prob_water_configure(options, ctypes.byref(self.handle)))
+                self._check(self.capi.prob_water_options_set(options, name.encode(), text.encode()))
+            self._check(self.capi.prob_water_configure(options, ctypes.byref(self.handle)))
         finally:
-            self.library.prob_water_options_free(options)
+            self.capi.prob_water_options_free(options)
         summary = np.empty(6)
-        self._check(self.library.prob_water_summary(self.handle, summary.ctypes.data))
+        self._check(self.capi.prob_water_summary(self.handle, summary.ctypes.data))
         #: cm/s, m/s, and the facets' slope variances along and across the wind
         self.friction_velocity, self.wind_speed_10, self.sigma_u2, self.sigma_c2 = summary[:4]
         self.whitecap_fraction, self.ior = summary[4:]
 
     def __del__(self):
-        if Core.library and getattr(self, "handle", None):
-            Core.library.prob_water_free(self.handle)
+        if Core.capi and getattr(self, "handle", None):
+            Core.capi.prob_water_free(self.handle)
 
     def _check(self, status):
         if status != 0:
-            raise ValueError(self.library.prob_water_last_error().decode())
+            raise ValueError(self.capi.prob_water_last_error().decode())
 
     def _batch(self, call, i, o):
         i, o = (np.ascontiguousarray(v, dtype=np.float64).reshape(-1, 3) for v in (i, o))
@@ -68,11 +68,11 @@ class Core:
 
     def f(self, i, o):
         """The BRDF, 1/sr."""
-        return self._batch(self.library.prob_water_eval, i, o)
+        return self._batch(self.capi.prob_water_eval, i, o)
 
     def pdf(self, i, o):
         """Density of the observer's direction among draws for the source's, 1/sr."""
-        return self._batch(self.library.prob_water_pdf, i, o)
+        return self._batch(self.capi.prob_water_pdf, i, o)
 
     def albedo(self, i, steps=600):
         """Integral of f cos(theta_o) over the observer's hemisphere: midpoints in the half vector's tilts."""
