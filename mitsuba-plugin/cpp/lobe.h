@@ -48,7 +48,8 @@ template <typename Float_> struct Lobe {
     /// Numbers are data, so that a change does not compile new kernels; decisions are made while tracing.
     Wide cos_wind, sin_wind, inv_sigma_u, inv_sigma_c, ior2;
     Float sigma_u, sigma_c, scale, c21, c03, steep_gain, sigma_shadow,
-        bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance, whitecap_fraction, whitecap_brdf;
+        bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance,
+        whitecap_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
     float ierfc[7] = {};
@@ -83,8 +84,9 @@ template <typename Float_> struct Lobe {
         whitecap_brdf = data(c.whitecap_brdf);
     }
 
-    DRJIT_STRUCT(Lobe, cos_wind, sin_wind, sigma_u, sigma_c, inv_sigma_u, inv_sigma_c, scale, c21, c03, steep_gain, sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u,
-                 inv_proposal_c, proposal_norm, normal_reflectance, ior2, whitecap_fraction, whitecap_brdf)
+    DRJIT_STRUCT(Lobe, cos_wind, sin_wind, sigma_u, sigma_c, inv_sigma_u, inv_sigma_c, scale, c21, c03, steep_gain,
+                 sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm,
+                 normal_reflectance, ior2, whitecap_fraction, whitecap_brdf)
 
     /// What the two directions fix, with tilts in numbers of type T.
     template <typename T> struct Geometry {
@@ -98,7 +100,7 @@ template <typename Float_> struct Lobe {
         Mask lit;
     };
 
-    template <typename T = Wide> Geometry<T> geometry(const Vector3f &i, const Vector3f &o) const {
+    template <typename T> Geometry<T> geometry(const Vector3f &i, const Vector3f &o) const {
         namespace dr = drjit;
         Geometry<T> g;
         g.cos_i = i.z();
@@ -273,7 +275,7 @@ private:
     /// f_SW, Eq. 56.
     template <typename T> Float facets(const Geometry<T> &g, const Vector3f &i, const Vector3f &o) const {
         namespace dr = drjit;
-        // p (Eqs. 72-73, 78-79) and cos^4 xi.
+        // p/cos^4 xi (Eqs. 72-73, 78-79).
         using S = dr::scalar_t<T>;
         T wide_u = -g.tilt_u * T(inv_sigma_u), wide_c = g.tilt_c * T(inv_sigma_c),
           wide_u2 = wide_u * wide_u, wide_c2 = wide_c * wide_c,
@@ -303,7 +305,7 @@ private:
             p *= larger(k, 0.f);
         }
 
-        // cos theta_i cos theta_r/G as area/scale (Eqs. 61-67), at least what the facets themselves hide where
+        // cos theta_i cos theta_r/G as area/over (Eqs. 61-67), at least what the facets themselves hide where
         // the bound is in force.
         Float rho = reflectance<T>(g.cos_zeta), area = g.cos_i * g.cos_o, over = 1.f;
         if (shadowing) {

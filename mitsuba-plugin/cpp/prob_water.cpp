@@ -132,13 +132,7 @@ public:
     using Parts = prob_water::Parts;
 
     ProbWater(const Properties &props)
-        : Base(props), m_options(prob_water::options()), m_water(m_options->configure()) {
-        for (const rust::String &name : prob_water::vocabulary()) {
-            std::string key(name);
-            if (props.has_property(key))
-                set(key, props);
-        }
-        refuse([&] { m_water = m_options->configure(); });
+        : Base(props), m_options(options(props)), m_water(refuse([&] { return m_options->configure(); })) {
         for (const char *name : Exposed)
             if (!std::isnan(m_water->number(name)))
                 m_exposed.emplace_back(name, 0.f);
@@ -246,10 +240,7 @@ public:
     }
 
     Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f & /*si*/, Mask active) const override {
-        if constexpr (dr::is_jit_v<Float>)
-            return spectrum(m_lobe.whitecap_fraction * m_lobe.whitecap_brdf * dr::Pi<ScalarFloat>) & active;
-        else
-            return spectrum(m_whitecap_albedo) & active;
+        return spectrum(m_lobe.whitecap_fraction * m_lobe.whitecap_brdf * dr::Pi<ScalarFloat>) & active;
     }
 
     std::string to_string() const override {
@@ -268,32 +259,40 @@ private:
     }
 
     /// Runs a call into the core; its errors become Mitsuba's.
-    template <typename Call> static void refuse(Call call) {
+    template <typename Call> static auto refuse(Call call) {
         try {
-            call();
+            return call();
         } catch (const rust::Error &e) {
             Throw("prob_water: %s", e.what());
         }
     }
 
-    void set(const std::string &name, const Properties &props) {
-        refuse([&] {
-            switch (props.type(name)) {
-                case Properties::Type::Bool:
-                    m_options->set_flag(name, props.get<bool>(name));
-                    break;
-                case Properties::Type::Integer:
-                    m_options->set_number(name, (double) props.get<int64_t>(name));
-                    break;
-                case Properties::Type::Float:
-                    m_options->set_number(name, props.get<double>(name));
-                    break;
-                case Properties::Type::String:
-                    m_options->set_text(name, std::string(props.get<std::string_view>(name)));
-                    break;
-                default:
-                    Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
+    /// The parameters of the vocabulary that the scene gives.
+    static rust::Box<prob_water::Options> options(const Properties &props) {
+        return refuse([&] {
+            rust::Box<prob_water::Options> options = prob_water::options();
+            for (const rust::String &word : prob_water::vocabulary()) {
+                std::string name(word);
+                if (!props.has_property(name))
+                    continue;
+                switch (props.type(name)) {
+                    case Properties::Type::Bool:
+                        options->set_flag(name, props.get<bool>(name));
+                        break;
+                    case Properties::Type::Integer:
+                        options->set_number(name, (double) props.get<int64_t>(name));
+                        break;
+                    case Properties::Type::Float:
+                        options->set_number(name, props.get<double>(name));
+                        break;
+                    case Properties::Type::String:
+                        options->set_text(name, std::string(props.get<std::string_view>(name)));
+                        break;
+                    default:
+                        Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
+                }
             }
+            return options;
         });
     }
 
@@ -304,9 +303,7 @@ private:
 
         prob_water::Coefficients c = m_water->coefficients();
         m_whitecaps = c.whitecap_fraction > 0.f;
-        m_whitecap_albedo = c.whitecap_fraction * c.whitecap_brdf * dr::Pi<ScalarFloat>;
-        if constexpr (dr::is_jit_v<Float>)
-            m_lobe = Lobe(c);
+        m_lobe = Lobe(c);
 
         m_components.clear();
         m_components.push_back(BSDFFlags::GlossyReflection | BSDFFlags::Anisotropic | BSDFFlags::FrontSide);
@@ -337,7 +334,6 @@ private:
     rust::Box<prob_water::Water> m_water;
     std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
     bool m_whitecaps = false;
-    ScalarFloat m_whitecap_albedo = 0.f;
     Lobe m_lobe;
 
     MI_TRAVERSE_CB(Base, m_lobe)

@@ -55,8 +55,6 @@ pub trait Real:
     fn ln(self) -> Self;
     /// Sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
-    /// Tangent of an angle in radians.
-    fn tan(self) -> Self;
     /// Angle of the point (x, y) = (`other`, `self`), radians.
     fn atan2(self, other: Self) -> Self;
     /// `exp(-x^2)/sqrt(pi) - x erfc(x)` for `x >= 0`: the integral of erfc from x to infinity.
@@ -101,9 +99,6 @@ macro_rules! forward {
         }
         fn sin_cos(self) -> (Self, Self) {
             self.sin_cos()
-        }
-        fn tan(self) -> Self {
-            self.tan()
         }
         fn atan2(self, other: Self) -> Self {
             self.atan2(other)
