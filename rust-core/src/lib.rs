@@ -22,11 +22,17 @@
 //! | --- | --- |
 //! | [`wind`] | 1-2, Table 1 |
 //! | [`whitecap`] | 51, 53-55 |
+//! | [`spectrum`] | 3-22 |
+//! | [`waves`] | 23-27, 37-38: draws |
+//! | [`surface`] | 31, 38-42, 52 |
+//! | [`cast`] | 46-50 |
 //! | [`optics`] | 62-63, refractive index |
 //! | [`slopes`] | 72-79 |
 //! | [`shadowing`] | 64-67 |
 //! | [`brdf`] | 56-61, 68-71, and the mixture with whitecaps |
 //! | [`sampling`] | importance sampling of the two lobes |
+//! | [`scenario`] | 28: lasers, beams and observers |
+//! | [`ensemble`] | section 7: statistics over drawn surfaces |
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
@@ -35,22 +41,33 @@ pub mod batch;
 pub mod brdf;
 #[cfg(feature = "c-api")]
 mod c_api;
+pub mod cast;
+pub mod ensemble;
 mod error;
 pub mod optics;
 mod parameters;
 pub mod real;
 pub mod sampling;
+pub mod scenario;
 pub mod shadowing;
 pub mod slopes;
+pub mod spectrum;
+pub mod surface;
+mod trigonometry;
 pub mod vocabulary;
+pub mod waves;
 pub mod whitecap;
 pub mod wind;
 
 pub use brdf::Lobe;
+pub use ensemble::{Ensemble, Presence, Statistics};
 pub use error::Error;
 pub use optics::Fresnel;
 pub use parameters::{Body, Parameters, Readings, Surface, Water};
 pub use real::Real;
 pub use sampling::Sample;
+pub use scenario::{Aim, Engagement};
 pub use slopes::SlopeMeasure;
+pub use surface::Surface as RealisedSurface;
+pub use waves::Draws;
 pub use wind::{Wind, WindProfile};

@@ -1,7 +1,9 @@
 use crate::brdf::{Facets, Lobe, steep_facets};
 use crate::optics::{self, Fresnel, Reflectance};
+use crate::spectrum::Spectrum;
+use crate::waves::Waves;
 use crate::wind::{Wind, WindProfile};
-use crate::{Error, SlopeMeasure, shadowing, slopes, whitecap};
+use crate::{Error, SlopeMeasure, scenario, shadowing, slopes, whitecap};
 
 /// Salt or no salt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,6 +32,8 @@ pub enum Surface {
     /// The normal that the geometry gives.
     #[default]
     Flat,
+    /// Drawn waves.
+    Instance,
 }
 
 /// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.
@@ -43,6 +47,18 @@ pub struct Parameters {
     pub footprint: f64,
     /// Where the facets lie.
     pub surface: Surface,
+    /// The report's M: waves of a drawn surface.
+    pub components: u32,
+    /// The report's N: drawn surfaces of an ensemble.
+    pub instances: u64,
+    /// Chooses the random numbers, below 2^53.
+    pub seed: u64,
+    /// Time at which waves are drawn, s.
+    pub time: f64,
+    /// Depth of the water, m.
+    pub depth: f64,
+    /// Distance to the shore the wind comes from, m: matters to 100 km.
+    pub fetch: f64,
     /// Micrometres.
     pub wavelength: f64,
     /// Refractive index; else that of `water` at `wavelength`.
@@ -70,6 +86,12 @@ impl Default for Parameters {
             wind_direction: 0.0,
             footprint: f64::INFINITY,
             surface: Surface::Flat,
+            components: 5,
+            instances: 50,
+            seed: 0,
+            time: 0.0,
+            depth: f64::INFINITY,
+            fetch: f64::INFINITY,
             wavelength: 0.55,
             ior: None,
             water: Body::Ocean,
@@ -100,11 +122,30 @@ pub struct Water {
     pub lobe: Lobe<f64>,
 }
 
-fn require(parameter: &'static str, value: f64, holds: bool, allowed: &str) -> Result<(), Error> {
+/// More components than any surface needs: 512 fill a renderer's.
+pub const MOST_COMPONENTS: u32 = 65_536;
+/// More instances than any mean needs.
+pub const MOST_INSTANCES: u64 = 1_000_000_000;
+
+fn require(parameter: &'static str, value: impl ToString, holds: bool, allowed: &str) -> Result<(), Error> {
     if holds {
         return Ok(());
     }
     Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: allowed.into() })
+}
+
+impl Water {
+    /// What the waves longer than two footprints are drawn from.
+    pub fn waves(&self) -> Waves {
+        let p = &self.parameters;
+        let spectrum = Spectrum::new(&self.wind, p.water, p.depth, p.fetch);
+        Waves {
+            spectrum,
+            log_range: spectrum.k_max(p.footprint).map(|k_max| [spectrum.k_min.ln(), k_max.ln()]),
+            components: p.components as usize,
+            wind_azimuth: p.wind_direction.to_radians(),
+        }
+    }
 }
 
 impl Parameters {
@@ -118,6 +159,14 @@ impl Parameters {
             "any finite angle, degrees",
         )?;
         require("footprint", self.footprint, self.footprint > 0.0, "above 0 m, up to inf")?;
+        let (m, n, seed) = (self.components, self.instances, self.seed);
+        require("components", m, (1..=MOST_COMPONENTS).contains(&m), "1 to 65536")?;
+        require("instances", n, (1..=MOST_INSTANCES).contains(&n), "1 to 1000000000")?;
+        require("seed", seed, seed < 1 << 53, "0 to 9007199254740991")?;
+        let (t, end) = (self.time, scenario::LONGEST_TIME);
+        require("time", t, t.abs() <= end, "finite, at most 1e9 s from 0")?;
+        require("depth", self.depth, self.depth > 0.0, "above 0 m, up to inf")?;
+        require("fetch", self.fetch, self.fetch > 0.0, "above 0 m, up to inf")?;
         let [first, last] = optics::WAVELENGTHS;
         require(
             "wavelength",

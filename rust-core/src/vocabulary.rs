@@ -22,14 +22,25 @@ const fn entry(name: &'static str, unit: &'static str, default: &'static str, he
 }
 
 /// Every parameter.
-pub const ENTRIES: [Entry; 16] = [
+pub const ENTRIES: [Entry; 22] = [
     entry("wind_speed", "m/s", "5", "wind speed at wind_height; 0 is calm"),
     entry("wind_height", "m", "10", "height at which wind_speed is measured, 0.1 to 100"),
     entry("friction_velocity", "cm/s", "", "friction velocity w* instead of wind_speed, 0 to 238.65"),
     entry("beaufort", "", "", "Beaufort number instead of wind_speed, 0 to 12"),
     entry("wind_direction", "degrees", "0", "azimuth the wind comes from, counter-clockwise from +x"),
-    entry("footprint", "m", "inf", "footprint D: waves shorter than 2 D are facets; or inf"),
-    entry("surface", "", "flat", "which surface the facets lie on: flat"),
+    entry(
+        "footprint",
+        "m",
+        "inf",
+        "footprint D: waves shorter than 2 D are facets; 0.15 unless surface is flat",
+    ),
+    entry("surface", "", "flat", "which surface the facets lie on: flat, or instance, drawn waves"),
+    entry("components", "", "5", "the report's M: waves of a drawn surface, 1 to 65536"),
+    entry("instances", "", "50", "the report's N: drawn surfaces of an ensemble"),
+    entry("seed", "", "0", "chooses the random numbers of the drawn surfaces"),
+    entry("time", "s", "0", "time at which waves are drawn"),
+    entry("depth", "m", "inf", "depth of the water"),
+    entry("fetch", "m", "inf", "distance to the shore the wind comes from; matters to 100 km"),
     entry("wavelength", "micrometres", "0.55", "wavelength, 0.2 to 200"),
     entry("ior", "", "", "refractive index, 1 to 4; else Hale and Querry's at the wavelength"),
     entry("water", "", "ocean", "ocean or fresh: sea salt raises the index by 0.006"),
@@ -79,6 +90,17 @@ fn number(parameter: &'static str, value: &Value) -> Result<f64, Error> {
     }
 }
 
+/// A whole number within what `T` holds.
+fn whole<T: TryFrom<u64>>(parameter: &'static str, value: &Value) -> Result<T, Error> {
+    let x = number(parameter, value)?;
+    // Beyond 2^53 not every whole number is one of float64.
+    let whole = (x.fract() == 0.0 && (0.0..9_007_199_254_740_992.0).contains(&x)).then_some(x as u64);
+    whole.and_then(|x| T::try_from(x).ok()).ok_or_else(|| {
+        let allowed = format!("a whole number from 0 to {}", u64::MAX >> (64 - 8 * size_of::<T>()).max(11));
+        Error::OutOfRange { parameter, value: value.to_string(), allowed }
+    })
+}
+
 fn flag(parameter: &'static str, value: &Value) -> Result<bool, Error> {
     match value {
         Value::Flag(x) => Ok(*x),
@@ -87,7 +109,9 @@ fn flag(parameter: &'static str, value: &Value) -> Result<bool, Error> {
     }
 }
 
-const SURFACES: [(&str, Surface); 1] = [("flat", Surface::Flat)];
+const SURFACES: [(&str, Surface); 2] = [("flat", Surface::Flat), ("instance", Surface::Instance)];
+/// Footprint of a surface with waves of its own, m, unless one is given.
+const WAVY_FOOTPRINT: f64 = 0.15;
 const WATERS: [(&str, Body); 2] = [("ocean", Body::Ocean), ("fresh", Body::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
@@ -124,6 +148,12 @@ impl Parameters {
             ("wind_direction", _) => number(self.wind_direction),
             ("footprint", _) => number(self.footprint),
             ("surface", _) => word(&self.surface, &SURFACES),
+            ("components", _) => number(f64::from(self.components)),
+            ("instances", _) => number(self.instances as f64),
+            ("seed", _) => number(self.seed as f64),
+            ("time", _) => number(self.time),
+            ("depth", _) => number(self.depth),
+            ("fetch", _) => number(self.fetch),
             ("wavelength", _) => number(self.wavelength),
             ("ior", _) => self.ior.and_then(number),
             ("water", _) => word(&self.water, &WATERS),
@@ -159,6 +189,7 @@ pub struct Builder {
     /// Which wind was given, and as what.
     wind_from: Option<(&'static str, String)>,
     wind_height: Option<f64>,
+    footprint: Option<f64>,
 }
 
 fn conflict(
@@ -202,8 +233,14 @@ impl Builder {
                 self.wind(name, value, Wind::Beaufort(b as u8))?;
             }
             "wind_direction" => p.wind_direction = number(name, value)?,
-            "footprint" => p.footprint = number(name, value)?,
+            "footprint" => self.footprint = Some(number(name, value)?),
             "surface" => p.surface = choice(name, value, &SURFACES)?,
+            "components" => p.components = whole(name, value)?,
+            "instances" => p.instances = whole(name, value)?,
+            "seed" => p.seed = whole(name, value)?,
+            "time" => p.time = number(name, value)?,
+            "depth" => p.depth = number(name, value)?,
+            "fetch" => p.fetch = number(name, value)?,
             "wavelength" => p.wavelength = number(name, value)?,
             "ior" => p.ior = Some(number(name, value)?),
             "water" => p.water = choice(name, value, &WATERS)?,
@@ -230,6 +267,11 @@ impl Builder {
     /// The parameters, once all have been named.
     pub fn parameters(&self) -> Result<Parameters, Error> {
         let mut p = self.parameters;
+        p.footprint = match (self.footprint, p.surface) {
+            (Some(footprint), _) => footprint,
+            (None, Surface::Flat) => f64::INFINITY,
+            (None, Surface::Instance) => WAVY_FOOTPRINT,
+        };
         if let Some(h) = self.wind_height {
             match &mut p.wind {
                 Wind::Speed { height, .. } => *height = h,
@@ -256,7 +298,13 @@ mod tests {
             ("beaufort", Value::Number(4.0)),
             ("wind_direction", Value::Number(-30.0)),
             ("footprint", Value::Number(0.15)),
-            ("surface", Value::Text("flat".into())),
+            ("surface", Value::Text("instance".into())),
+            ("components", Value::Number(20.0)),
+            ("instances", Value::Number(1e6)),
+            ("seed", Value::Number(12345.0)),
+            ("time", Value::Number(-3.5)),
+            ("depth", Value::Number(2.0)),
+            ("fetch", Value::Number(5e3)),
             ("wavelength", Value::Number(1.064)),
             ("ior", Value::Number(1.33)),
             ("water", Value::Text("fresh".into())),
@@ -305,6 +353,20 @@ mod tests {
             ("footprint", number(-1.0)),
             ("footprint", number(f64::NAN)),
             ("surface", text("lumpy")),
+            ("components", number(0.0)),
+            ("components", number(1e5)),
+            ("components", number(2.5)),
+            ("components", number(1e300)),
+            ("instances", number(0.0)),
+            ("instances", number(1e10)),
+            ("instances", number(-1.0)),
+            ("seed", number(-1.0)),
+            ("seed", number(1e16)),
+            ("time", number(f64::NAN)),
+            ("time", number(f64::INFINITY)),
+            ("depth", number(0.0)),
+            ("depth", number(f64::NAN)),
+            ("fetch", number(-5.0)),
             ("wavelength", number(0.1)),
             ("ior", number(0.99)),
             ("ior", number(f64::INFINITY)),

@@ -127,7 +127,7 @@ fn rising_end(height: f64) -> f64 {
 }
 
 /// First number at which `beyond` holds, between `low` where it does not and `high` where it does.
-fn bisect(mut low: f64, mut high: f64, beyond: impl Fn(f64) -> bool) -> f64 {
+pub(crate) fn bisect(mut low: f64, mut high: f64, beyond: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {

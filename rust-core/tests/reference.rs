@@ -1,15 +1,10 @@
 //! The core against vectors of an independent float64 implementation: 1e-10 relative.
 
-use prob_water::{Lobe, Parameters, Wind, slopes, whitecap, wind};
+mod common;
 
-fn rows(name: &str) -> Vec<Vec<f64>> {
-    let path = format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let rows: Vec<Vec<f64>> =
-        reader.records().map(|r| r.unwrap().iter().map(|x| x.parse().unwrap()).collect()).collect();
-    assert!(rows.len() > 10);
-    rows
-}
+use common::rows;
+use prob_water::spectrum::Spectrum;
+use prob_water::{Body, Lobe, Parameters, RealisedSurface, Surface, Wind, slopes, whitecap, wind};
 
 #[track_caller]
 fn close(found: f64, expected: f64) {
@@ -58,6 +53,47 @@ fn whitecaps() {
         let wind = Wind::FrictionVelocity(r[0]).profile().unwrap();
         close(whitecap::fraction(wind.w10), r[3]);
         assert!((whitecap::probability(r[0], r[1]) - r[2]).abs() <= 1e-10, "{r:?}");
+    }
+}
+
+#[test]
+fn spectra() {
+    for r in rows("spectrum") {
+        let wind = Wind::FrictionVelocity(r[0]).profile().unwrap();
+        let water = if r[1] == 1.0 { Body::Fresh } else { Body::Ocean };
+        let s = Spectrum::new(&wind, water, r[2], r[3]);
+        for (found, expected) in
+            [s.frequency(r[4]), s.density(r[4]), s.k0, s.k1, s.k2, s.k_min].into_iter().zip(&r[5..])
+        {
+            close(found, *expected);
+        }
+    }
+}
+
+/// The rows come by the components of an instance.
+#[test]
+fn surfaces() {
+    let rows = rows("surface");
+    for instance in rows.chunk_by(|a, b| a[..5] == b[..5]) {
+        let r = &instance[0];
+        let parameters = Parameters {
+            depth: r[2],
+            components: instance.len() as u32,
+            surface: Surface::Instance,
+            ..water(r[0], r[1], 1.33, r[3])
+        };
+        let waves = parameters.configure().unwrap().waves();
+        let components = instance.iter().map(|r| {
+            let c = waves.component(r[5], r[6], r[7]);
+            close(100.0 * c.amplitude, r[8]);
+            close(c.frequency, r[9]);
+            c
+        });
+        let point = RealisedSurface::new(components, r[12]).point([0.01 * r[10], 0.01 * r[11]]);
+        let found = [100.0 * point.height, point.slope[0], point.slope[1], 100.0 * point.acceleration];
+        for (found, expected) in found.into_iter().zip(&r[13..]) {
+            close(found, *expected);
+        }
     }
 }
 

@@ -3,6 +3,16 @@
 
 use prob_water::{Lobe, Parameters, Water, Wind};
 
+/// Rows of a file of reference vectors, empty fields left out.
+pub fn rows(name: &str) -> Vec<Vec<f64>> {
+    let path = format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let rows: Vec<Vec<f64>> =
+        reader.records().map(|r| r.unwrap().iter().map(|x| x.parse().unwrap()).collect()).collect();
+    assert!(rows.len() > 10);
+    rows
+}
+
 pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// Winds from calm to the end of Table 1, cm/s.

@@ -1,0 +1,146 @@
+//! Engagements: a laser, its beam and the observers at one time (Eqs. 28, 57-58).
+
+use crate::Error;
+use glam::DVec3;
+
+/// The flattest beam, as the sine of its angle below the horizontal: 0.001 degrees. A flatter one might travel
+/// without end before it meets a wave.
+pub const FLATTEST_BEAM: f64 = 1.745e-5;
+/// Times reach to this far from 0, s: beyond, phases would lose their last digits.
+pub const LONGEST_TIME: f64 = 1e9;
+/// Coordinates reach to this far from 0, m.
+pub const FARTHEST: f64 = 1e9;
+
+/// Where the laser points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Aim {
+    /// At a place, m.
+    Target([f64; 3]),
+    /// Along a direction of any length.
+    Direction([f64; 3]),
+}
+
+/// A laser, its beam and its observers at one time; checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Engagement {
+    time: f64,
+    laser: [f64; 3],
+    direction: [f64; 3],
+    observers: Vec<[f64; 3]>,
+}
+
+impl Engagement {
+    /// Time in s, positions in m: all finite, laser and observers above the mean surface, the beam downwards.
+    pub fn new(time: f64, laser: [f64; 3], aim: Aim, observers: &[[f64; 3]]) -> Result<Self, Error> {
+        if !(time.abs() <= LONGEST_TIME) {
+            return refuse("time", time, "finite, at most 1e9 s from 0");
+        }
+        position("laser", laser)?;
+        let (name, given, beam) = match aim {
+            Aim::Target(target) => {
+                if !within(target) {
+                    return refuse("target", shown(target), "finite coordinates, at most 1e9 m from 0");
+                }
+                ("target", target, DVec3::from(target) - DVec3::from(laser))
+            }
+            Aim::Direction(direction) => ("direction", direction, DVec3::from(direction)),
+        };
+        let direction = beam.normalize_or_zero();
+        if !(beam.is_finite() && direction.z <= -FLATTEST_BEAM) {
+            let allowed = "a beam that points down, at least 0.001 degrees below the horizontal";
+            return refuse(name, shown(given), allowed);
+        }
+        if observers.is_empty() {
+            return refuse("observers", "none", "at least one");
+        }
+        for observer in observers {
+            position("observers", *observer)?;
+        }
+        Ok(Self { time, laser, direction: direction.into(), observers: observers.into() })
+    }
+
+    /// The report's geometry for angles (Eqs. 80-82): a laser at an angle of incidence in degrees, so far from the
+    /// origin in m, aimed at it in the x-z plane, and observers in directions away from it, so far.
+    pub fn far(incidence: f64, laser: f64, directions: &[[f64; 3]], observers: f64) -> Result<Self, Error> {
+        let (sin, cos) = incidence.to_radians().sin_cos();
+        let observers: Vec<_> = directions.iter().map(|d| d.map(|x| observers * x)).collect();
+        Self::new(0.0, [-laser * sin, 0.0, laser * cos], Aim::Target([0.0; 3]), &observers)
+    }
+
+    /// s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// m.
+    pub fn laser(&self) -> [f64; 3] {
+        self.laser
+    }
+
+    /// Unit vector along the beam.
+    pub fn direction(&self) -> [f64; 3] {
+        self.direction
+    }
+
+    /// m.
+    pub fn observers(&self) -> &[[f64; 3]] {
+        &self.observers
+    }
+}
+
+fn within(position: [f64; 3]) -> bool {
+    position.iter().all(|x| x.abs() <= FARTHEST)
+}
+
+fn position(parameter: &'static str, position: [f64; 3]) -> Result<(), Error> {
+    if within(position) && position[2] > 0.0 {
+        return Ok(());
+    }
+    refuse(parameter, shown(position), "finite coordinates, at most 1e9 m from 0, with z above 0")
+}
+
+fn shown([x, y, z]: [f64; 3]) -> String {
+    format!("[{x}, {y}, {z}]")
+}
+
+fn refuse<T>(parameter: &'static str, value: impl ToString, allowed: &str) -> Result<T, Error> {
+    Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: allowed.into() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HIGH: [f64; 3] = [0.0, 0.0, 10.0];
+
+    #[test]
+    fn directions_are_of_unit_length() {
+        let e = Engagement::new(1.0, [0.0, 0.0, 8.0], Aim::Target([6.0, 0.0, 0.0]), &[HIGH]).unwrap();
+        assert!((DVec3::from(e.direction()) - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-15);
+        let e = Engagement::new(1.0, HIGH, Aim::Direction([0.0, 0.0, -7.0]), &[HIGH]).unwrap();
+        assert_eq!(e.direction(), [0.0, 0.0, -1.0]);
+    }
+
+    #[test]
+    fn refusals_name_what_is_wrong() {
+        let down = Aim::Direction([0.0, 0.0, -1.0]);
+        for (name, refused) in [
+            ("time", Engagement::new(f64::NAN, HIGH, down, &[HIGH])),
+            ("time", Engagement::new(f64::INFINITY, HIGH, down, &[HIGH])),
+            ("laser", Engagement::new(0.0, [0.0, 0.0, 0.0], down, &[HIGH])),
+            ("laser", Engagement::new(0.0, [f64::NAN, 0.0, 1.0], down, &[HIGH])),
+            ("direction", Engagement::new(0.0, HIGH, Aim::Direction([1.0, 0.0, 0.0]), &[HIGH])),
+            ("direction", Engagement::new(0.0, HIGH, Aim::Direction([1.0, 0.0, 1.0]), &[HIGH])),
+            ("direction", Engagement::new(0.0, HIGH, Aim::Direction([0.0; 3]), &[HIGH])),
+            ("direction", Engagement::new(0.0, HIGH, Aim::Direction([0.0, f64::NAN, -1.0]), &[HIGH])),
+            ("target", Engagement::new(0.0, HIGH, Aim::Target([0.0, 0.0, 11.0]), &[HIGH])),
+            ("target", Engagement::new(0.0, HIGH, Aim::Target(HIGH), &[HIGH])),
+            ("target", Engagement::new(0.0, HIGH, Aim::Target([0.0, 0.0, f64::NAN]), &[HIGH])),
+            ("observers", Engagement::new(0.0, HIGH, down, &[])),
+            ("observers", Engagement::new(0.0, HIGH, down, &[HIGH, [0.0, 0.0, -1.0]])),
+        ] {
+            let error = refused.unwrap_err();
+            assert!(matches!(error, Error::OutOfRange { parameter, .. } if parameter == name), "{error}");
+        }
+    }
+}
