@@ -33,6 +33,7 @@
 //! | [`sampling`] | importance sampling of the two lobes |
 //! | [`scenario`] | 28: lasers, beams and observers |
 //! | [`ensemble`] | section 7: statistics over drawn surfaces |
+//! | [`exact`] | the same for infinitely many, without draws |
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
@@ -42,10 +43,13 @@ pub mod brdf;
 #[cfg(feature = "c-api")]
 mod c_api;
 pub mod cast;
+mod characteristic;
 pub mod ensemble;
 mod error;
+pub mod exact;
 pub mod optics;
 mod parameters;
+mod quadrature;
 pub mod real;
 pub mod sampling;
 pub mod scenario;
@@ -62,6 +66,7 @@ pub mod wind;
 pub use brdf::Lobe;
 pub use ensemble::{Ensemble, Presence, Statistics};
 pub use error::Error;
+pub use exact::Exact;
 pub use optics::Fresnel;
 pub use parameters::{Body, Parameters, Readings, Surface, Water};
 pub use real::Real;

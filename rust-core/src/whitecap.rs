@@ -8,18 +8,24 @@ pub fn fraction(w10: f64) -> f64 {
     (1.7e-6 * w10.powf(3.75)).min(1.0)
 }
 
+/// Accelerations in cm/s^2 between which the probability of a whitecap falls from 1 to 0 (Eqs. 53-54), at a friction
+/// velocity in cm/s.
+pub fn onset(friction_velocity: f64) -> [f64; 2] {
+    let alpha = -0.0022 * friction_velocity + 0.4448;
+    [-0.39 * GRAVITY, GRAVITY * (-alpha).max(-0.39)]
+}
+
 /// Probability of a whitecap (Eqs. 53-54) where the surface has a vertical acceleration in cm/s^2,
 /// at a friction velocity in cm/s. The printed ranges overlap below w* = 24.9; the first match
 /// counts, which is the only monotone reading.
 pub fn probability(friction_velocity: f64, acceleration: f64) -> f64 {
-    let alpha = -0.0022 * friction_velocity + 0.4448;
-    let a = acceleration / GRAVITY;
-    if a <= -0.39 {
+    let [sure, none] = onset(friction_velocity);
+    if acceleration <= sure {
         1.0
-    } else if a > (-alpha).max(-0.39) {
+    } else if acceleration > none {
         0.0
     } else {
-        (a + alpha) / (alpha - 0.39)
+        (none - acceleration) / (none - sure)
     }
 }
 

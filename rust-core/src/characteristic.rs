@@ -1,0 +1,331 @@
+//! The slope of a drawn surface at a point, without drawing: its density from its characteristic function.
+//!
+//! The components are drawn independently and alike, so the characteristic function of their sum is that of one to the
+//! power M. One component with a uniform phase has the slope `a k sin(Psi) e_phi` and the vertical acceleration
+//! `-a omega^2 cos(Psi)`; its characteristic function is the mean of `J0(sqrt((a k q.e_phi)^2 + (a omega^2 r)^2))` over
+//! the draws of k and phi. The amplitude is a function of k times the root of F(phi), so that mean is taken over k
+//! once, for a table, and over phi for every (q, r): F and `(q.e_phi)^2` have the period pi of the azimuths drawn, and
+//! equal weights at equal distances converge as fast as anything.
+//!
+//! Everything is even in both slopes (upwind and crosswind) and in the acceleration.
+
+use crate::quadrature::gauss_legendre;
+use crate::spectrum::spreading;
+use crate::waves::Waves;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::LazyLock;
+
+/// Nodes in ln k for every piece of the spectrum, and azimuths of a half turn.
+const WAVE_NUMBERS: usize = 24;
+const AZIMUTHS: usize = 32;
+
+/// Draws of one component.
+#[derive(Debug, Clone)]
+pub(crate) struct Component {
+    /// Share, slope amplitude over sqrt(F), and acceleration amplitude over sqrt(F) in m/s^2, of wave numbers.
+    wave_numbers: Vec<[f64; 3]>,
+    /// cos and sin from the wind's azimuth, and sqrt(F).
+    azimuths: Vec<[f64; 3]>,
+    /// Of one component: slope upwind, slope crosswind, acceleration.
+    variances: [f64; 3],
+    /// No component has more: slope upwind, slope crosswind, acceleration.
+    bounds: [f64; 3],
+}
+
+impl Component {
+    /// `None` where there are no waves.
+    pub fn new(waves: &Waves) -> Option<Self> {
+        let [low, high] = waves.log_range?;
+        // The spectrum is smooth between these.
+        let inner = [waves.spectrum.k0, waves.spectrum.k1]
+            .map(f64::ln)
+            .into_iter()
+            .filter(|k| (low..high).contains(k));
+        let ends: Vec<f64> = [low].into_iter().chain(inner).chain([high]).collect();
+        let rule = gauss_legendre(WAVE_NUMBERS);
+        let mut wave_numbers = vec![];
+        for piece in ends.windows(2) {
+            let (middle, half) = (0.5 * (piece[0] + piece[1]), 0.5 * (piece[1] - piece[0]));
+            wave_numbers.extend(rule.iter().map(|(x, weight)| {
+                let component = waves.component((middle + half * x).exp(), 0.0, waves.wind_azimuth);
+                let amplitude = component.amplitude / spreading(0.0).sqrt();
+                let acceleration = amplitude * component.frequency.powi(2);
+                [weight * half / (high - low), amplitude * component.wave_number, acceleration]
+            }));
+        }
+        let azimuths: Vec<_> = (0..AZIMUTHS)
+            .map(|i| {
+                let angle = PI * ((i as f64 + 0.5) / AZIMUTHS as f64) - FRAC_PI_2;
+                [angle.cos(), angle.sin(), spreading(angle).sqrt()]
+            })
+            .collect();
+        let energy = |of: usize| wave_numbers.iter().map(|n| n[0] * n[of] * n[of]).sum::<f64>();
+        let share = |of: &dyn Fn(&[f64; 3]) -> f64| azimuths.iter().map(of).sum::<f64>() / AZIMUTHS as f64;
+        let variances = [
+            0.5 * energy(1) * share(&|[c, _, f]| (c * f).powi(2)),
+            0.5 * energy(1) * share(&|[_, s, f]| (s * f).powi(2)),
+            0.5 * energy(2) * share(&|[_, _, f]| f * f),
+        ];
+        let most = |of: usize| wave_numbers.iter().map(|n| n[of]).fold(0.0, f64::max);
+        let widest = |of: &dyn Fn(&[f64; 3]) -> f64| azimuths.iter().map(of).fold(0.0, f64::max);
+        let bounds = [
+            most(1) * widest(&|[c, _, f]| (c * f).abs()),
+            most(1) * widest(&|[_, s, f]| (s * f).abs()),
+            most(2) * widest(&|[_, _, f]| *f),
+        ];
+        Some(Self { wave_numbers, azimuths, variances, bounds })
+    }
+
+    /// Variances of a sum of `count`: slope upwind, crosswind, acceleration in m^2/s^4.
+    pub fn variances(&self, count: f64) -> [f64; 3] {
+        self.variances.map(|v| count * v)
+    }
+
+    /// Bounds of a sum of `count`.
+    pub fn bounds(&self, count: f64) -> [f64; 3] {
+        self.bounds.map(|b| count * b)
+    }
+
+    /// Characteristic function of the slope at the products of these frequencies upwind and crosswind, row by row.
+    pub fn slope(&self, upwind: &[f64], crosswind: &[f64]) -> Vec<f64> {
+        let end = self.reach(upwind, crosswind);
+        let table = Table::new(end, self.finest(1), |x| self.mean(|n| bessel(n[1] * x)));
+        let mut values = Vec::with_capacity(upwind.len() * crosswind.len());
+        for u in upwind {
+            for c in crosswind {
+                let of = |[cos, sin, f]: &[f64; 3]| table.at(f * (u * cos + c * sin).abs());
+                values.push(self.azimuths.iter().map(of).sum::<f64>() / AZIMUTHS as f64);
+            }
+        }
+        values
+    }
+
+    /// Characteristic function of slope and acceleration: for every pair as in [`Component::slope`] a row over
+    /// the frequencies of the acceleration.
+    pub fn slope_and_acceleration(
+        &self,
+        upwind: &[f64],
+        crosswind: &[f64],
+        acceleration: &[f64],
+    ) -> Vec<f64> {
+        let end = self.reach(upwind, crosswind);
+        let steepest = self.azimuths.iter().map(|a| a[2]).fold(0.0, f64::max);
+        let last = steepest * acceleration.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let (x_step, y_step) = (self.finest(1), self.finest(2));
+        let lines: Vec<Table> = (0..(end / x_step) as usize + 4)
+            .into_par_iter()
+            .map(|i| {
+                // A line before 0 mirrors the first after it.
+                let x = (i as f64 - 1.0) * x_step;
+                Table::new(last, y_step, |y| self.mean(|n| bessel((n[1] * x).hypot(n[2] * y))))
+            })
+            .collect();
+        let row = |(u, c): (&f64, &f64)| {
+            let mut values = vec![0.0; acceleration.len()];
+            for [cos, sin, f] in &self.azimuths {
+                let x = f * (u * cos + c * sin).abs() / x_step;
+                let i = x as usize;
+                let line = Table::between(&lines[i..i + 4], x - i as f64);
+                for (value, r) in values.iter_mut().zip(acceleration) {
+                    *value += line.at(f * r) / AZIMUTHS as f64;
+                }
+            }
+            values
+        };
+        let pairs: Vec<_> = upwind.iter().flat_map(|u| crosswind.iter().map(move |c| (u, c))).collect();
+        pairs.into_par_iter().flat_map_iter(row).collect()
+    }
+
+    fn mean(&self, of: impl Fn(&[f64; 3]) -> f64) -> f64 {
+        self.wave_numbers.iter().map(|n| n[0] * of(n)).sum()
+    }
+
+    /// The largest argument that these frequencies need.
+    fn reach(&self, upwind: &[f64], crosswind: &[f64]) -> f64 {
+        let largest = |of: &[f64]| of.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let (u, c) = (largest(upwind), largest(crosswind));
+        self.azimuths.iter().map(|[cos, sin, f]| f * (u * cos.abs() + c * sin.abs())).fold(0.0, f64::max)
+    }
+
+    /// A step of a table that resolves the Bessel function of the largest amplitude.
+    fn finest(&self, of: usize) -> f64 {
+        0.0625 / self.wave_numbers.iter().map(|n| n[of]).fold(0.0, f64::max)
+    }
+}
+
+/// An even function at equal steps from 0, with cubic interpolation.
+struct Table {
+    per_step: f64,
+    values: Vec<f64>,
+}
+
+impl Table {
+    fn new(end: f64, step: f64, of: impl Fn(f64) -> f64) -> Self {
+        // One value before 0, where the function is even, and two after the end.
+        let count = (end / step) as usize + 5;
+        Self { per_step: 1.0 / step, values: (0..count).map(|i| of((i as f64 - 1.0).abs() * step)).collect() }
+    }
+
+    /// Cubic interpolation between the second and the third of four.
+    fn between(lines: &[Self], x: f64) -> Self {
+        let weights = cubic(x);
+        let value = |i: usize| weights.iter().zip(lines).map(|(w, line)| w * line.values[i]).sum();
+        Self { per_step: lines[0].per_step, values: (0..lines[0].values.len()).map(value).collect() }
+    }
+
+    #[inline]
+    fn at(&self, x: f64) -> f64 {
+        let x = x * self.per_step;
+        let i = x as usize;
+        let weights = cubic(x - i as f64);
+        (0..4).map(|j| weights[j] * self.values[i + j]).sum()
+    }
+}
+
+/// Lagrange's weights of the values at -1, 0, 1 and 2.
+#[inline]
+pub(crate) fn cubic(x: f64) -> [f64; 4] {
+    let (a, b, c, d) = (x + 1.0, x, x - 1.0, x - 2.0);
+    [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0]
+}
+
+/// J0 of a number not below 0, to 1e-6: a table with cubic interpolation, beyond it the leading asymptotic terms.
+fn bessel(x: f64) -> f64 {
+    static J0: LazyLock<Table> = LazyLock::new(|| Table::new(64.0, 0.0625, libm::j0));
+    if x < 64.0 {
+        return J0.at(x);
+    }
+    let phase = x - 0.25 * PI;
+    (2.0 / (PI * x)).sqrt() * (phase.cos() + phase.sin() / (8.0 * x))
+}
+
+/// A function of the slope, even in both of its parts, as a table with bicubic interpolation.
+#[derive(Debug, Clone)]
+pub(crate) struct SlopeTable {
+    /// Of one step, upwind and crosswind.
+    pub steps: [f64; 2],
+    /// Values from 0, upwind and crosswind.
+    pub counts: [usize; 2],
+    /// Row by row, a line and a column before 0 included.
+    values: Vec<f64>,
+}
+
+impl SlopeTable {
+    /// The inverse transform of values at the products of frequencies upwind and crosswind (equal steps from 0), at
+    /// `counts` slopes at `steps` from 0.
+    pub fn transform(
+        spectrum: &[f64],
+        frequencies: [&[f64]; 2],
+        steps: [f64; 2],
+        counts: [usize; 2],
+    ) -> Self {
+        // Sums over positive and negative frequencies are sums of cosines; 0 counts once.
+        let cosines = |axis: usize| -> Vec<Vec<f64>> {
+            let q = frequencies[axis];
+            let weight = |i: usize| (q[1] - q[0]) / PI * if i == 0 { 0.5 } else { 1.0 };
+            let at = |s: f64| (0..q.len()).map(|i| weight(i) * (q[i] * s).cos()).collect();
+            (0..counts[axis] + 3).map(|n| at((n as f64 - 1.0) * steps[axis])).collect()
+        };
+        let (upwind, crosswind) = (cosines(0), cosines(1));
+        let width = frequencies[1].len();
+        let mut values = Vec::with_capacity((counts[0] + 3) * (counts[1] + 3));
+        let mut line = vec![0.0; width];
+        for row in &upwind {
+            line.fill(0.0);
+            for (weight, part) in row.iter().zip(spectrum.chunks(width)) {
+                line.iter_mut().zip(part).for_each(|(sum, x)| *sum += weight * x);
+            }
+            let value = |c: &Vec<f64>| c.iter().zip(&line).map(|(a, b)| a * b).sum::<f64>();
+            values.extend(crosswind.iter().map(value));
+        }
+        Self { steps, counts, values }
+    }
+
+    /// At a node.
+    pub fn node(&self, upwind: usize, crosswind: usize) -> f64 {
+        self.values[(upwind + 1) * (self.counts[1] + 3) + crosswind + 1]
+    }
+
+    /// At a slope upwind and crosswind; 0 beyond the table.
+    #[inline]
+    pub fn at(&self, slope: [f64; 2]) -> f64 {
+        let (u, c) = (slope[0].abs() / self.steps[0], slope[1].abs() / self.steps[1]);
+        let (i, j) = (u as usize, c as usize);
+        if i >= self.counts[0] || j >= self.counts[1] {
+            return 0.0;
+        }
+        let (along, across) = (cubic(u - i as f64), cubic(c - j as f64));
+        let width = self.counts[1] + 3;
+        let line = |n: usize| {
+            let v = &self.values[(i + n) * width + j..][..4];
+            across[0] * v[0] + across[1] * v[1] + across[2] * v[2] + across[3] * v[3]
+        };
+        along[0] * line(0) + along[1] * line(1) + along[2] * line(2) + along[3] * line(3)
+    }
+}
+
+/// Weights of the cosines, at these equally spaced frequencies from 0, of the even part of a function that falls
+/// linearly from 1 at `ends[0]` to 0 at `ends[1]`; a period of the first frequency after 0 has to hold both.
+pub(crate) fn falling(ends: [f64; 2], frequencies: &[f64]) -> Vec<f64> {
+    let half_period = PI / frequencies[1];
+    let [a, b] = ends.map(|x| x.clamp(-half_period, half_period));
+    let mean = 0.5 * (a + b);
+    let weight = |r: &f64| {
+        if *r == 0.0 {
+            return (half_period + mean) / (TAU / frequencies[1]);
+        }
+        // The mean of sin(r x) over [a, b].
+        let spread = 0.5 * r * (b - a);
+        let narrow = if spread.abs() < 1e-6 { 1.0 } else { spread.sin() / spread };
+        narrow * (r * mean).sin() / (r * half_period)
+    };
+    frequencies.iter().map(weight).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bessel_follows_libm() {
+        for i in 0..20_000 {
+            let x = f64::from(i) * 0.01;
+            assert!((bessel(x) - libm::j0(x)).abs() < 2e-6, "{x}");
+        }
+    }
+
+    #[test]
+    fn falling_is_its_cosine_series() {
+        let frequencies: Vec<f64> = (0..4000).map(|i| f64::from(i) * 0.5).collect();
+        for ends in [[-3.0, -1.5], [-3.0, -3.0], [-2.0, 1.0]] {
+            let weights = falling(ends, &frequencies);
+            for x in [-5.0, -2.5, -1.7, 0.3, 0.9, 2.2, 5.5] {
+                let at = |x: f64| {
+                    if x <= ends[0] {
+                        1.0
+                    } else if x >= ends[1] {
+                        0.0
+                    } else {
+                        (ends[1] - x) / (ends[1] - ends[0])
+                    }
+                };
+                let series: f64 = frequencies.iter().zip(&weights).map(|(r, w)| w * (r * x).cos()).sum();
+                assert!((series - 0.5 * (at(x) + at(-x))).abs() < 1e-3, "{ends:?} {x}: {series}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_gaussian_transforms_into_one() {
+        let q: Vec<f64> = (0..60).map(|i| f64::from(i) * 0.15).collect();
+        let spectrum: Vec<f64> =
+            q.iter().flat_map(|u| q.iter().map(move |c| (-0.5 * (u * u + 0.49 * c * c)).exp())).collect();
+        let table = SlopeTable::transform(&spectrum, [&q, &q], [0.125, 0.1], [50, 40]);
+        for (u, c) in [(0.0f64, 0.0f64), (0.3, -0.44), (-2.07, 1.1), (4.01, 2.03)] {
+            let expected = (-0.5 * (u * u + c * c / 0.49)).exp() / (TAU * 0.7);
+            assert!((table.at([u, c]) - expected).abs() < 1e-5, "{u} {c}");
+        }
+        assert_eq!(table.at([7.0, 0.0]), 0.0);
+    }
+}

@@ -1,0 +1,475 @@
+//! The statistics of infinitely many draws, without a draw.
+//!
+//! A beam from `i` meets a slope `s` of the drawn surface in proportion to its density `p(s)` and to the area that it
+//! shows, `A(s) = max(0, N.i)/N_z`. So the mean of f is `integral p A f ds/integral p A ds`, and the mean of its square,
+//! of its product with the local cosine and its distribution follow alike. `p` comes from the characteristic
+//! function of one component (module `characteristic`); so does `W(s)`, the density times the probability of a whitecap at
+//! that slope, where whitecaps matter.
+//!
+//! Source and observers are taken to be far away compared with the waves: directions are those from the place where
+//! the beam meets the mean surface. What waves hide is known on average only: the share of an observer's view is
+//! Smith's for heights that source and observer see together, `(1 + L_i)/(1 + L_i + L_o)`, with the drawn slopes'
+//! variance. The ray cast of [`crate::Ensemble`] is the reference for low views.
+
+use crate::brdf::Facets;
+use crate::characteristic::{Component, SlopeTable, falling};
+use crate::ensemble::{QUANTILES, Statistics};
+use crate::quadrature::gauss_legendre;
+use crate::scenario::Engagement;
+use crate::shadowing::hidden;
+use crate::surface::normal;
+use crate::{Error, Water, whitecap};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use std::f64::consts::{PI, SQRT_2};
+
+/// Fewest components whose slope has a density smooth enough for these sums.
+pub const FEWEST_COMPONENTS: u32 = 4;
+/// The density is tabulated to so many standard deviations, in steps of this many.
+const DENSITY_END: f64 = 8.5;
+const DENSITY_STEP: f64 = 0.125;
+/// The facets' lobe blurs what it is multiplied with: frequencies fade out between so many over its standard
+/// deviation (or the drawn slopes', if that is less), or end where the characteristic function has become this small.
+const FREQUENCIES: [f64; 2] = [5.0, 8.0];
+const NEGLIGIBLE: f64 = 1e-6;
+/// Every how many nodes of the table are used where a sum over all slopes is smooth, and for quantiles.
+const COARSE: usize = 4;
+const FINE: usize = 2;
+/// Integrals reach to so many standard deviations of the facets' lobe, and of its product with the drawn slopes',
+const LOBE_END: f64 = 4.5;
+const PRODUCT_END: f64 = 5.0;
+/// in steps of so many of the lobe's or the drawn slopes'; where they are cut off, with so many of Gauss's nodes.
+const STEP: f64 = 0.66;
+const NODES: usize = 24;
+/// Whitecaps rarer than this are left out.
+const RARE: f64 = 1e-6;
+
+/// The slope density of a drawn sea and what it reflects.
+#[derive(Debug, Clone)]
+pub struct Exact {
+    water: Water,
+    wind: DVec2,
+    /// Obscuration by Smith's share; off for what a point of the surface would reflect if nothing stood in the way.
+    pub obscuration: bool,
+    /// `None`: no waves, the surface is level.
+    slopes: Option<Slopes>,
+    rule: Vec<(f64, f64)>,
+}
+
+/// The slopes of a drawn surface, in components upwind and crosswind.
+#[derive(Debug, Clone)]
+struct Slopes {
+    /// Standard deviations.
+    sigma: DVec2,
+    density: SlopeTable,
+    /// W: density times probability of a whitecap.
+    capped: Option<SlopeTable>,
+}
+
+/// Mean of f and of its relatives for one observer, 1/sr.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Means {
+    /// Mean of f.
+    pub f: f64,
+    /// Mean of f times the local cosine of the angle of reflection.
+    pub f_cos: f64,
+    /// Mean of f squared, 1/sr^2.
+    pub f_squared: f64,
+}
+
+impl Exact {
+    /// The density of the sea's slopes, for `components` of at least [`FEWEST_COMPONENTS`].
+    pub fn new(water: &Water) -> Result<Self, Error> {
+        let waves = water.waves();
+        if water.parameters.components < FEWEST_COMPONENTS {
+            return Err(Error::OutOfRange {
+                parameter: "components",
+                value: water.parameters.components.to_string(),
+                allowed: format!("at least {FEWEST_COMPONENTS} for exact statistics"),
+            });
+        }
+        let component = Component::new(&waves);
+        Ok(Self {
+            water: *water,
+            wind: DVec2::from_angle(waves.wind_azimuth),
+            obscuration: true,
+            slopes: component.map(|component| Slopes::new(&component, water)),
+            rule: gauss_legendre(NODES),
+        })
+    }
+
+    /// Means of f for every observer of an engagement.
+    pub fn means(&self, engagement: &Engagement) -> Vec<Means> {
+        let source = self.source(engagement);
+        self.each(engagement, |o| self.mean(&source, o))
+    }
+
+    /// Everything for every observer of an engagement; quantiles and exceedances to a few thousandths in probability.
+    pub fn statistics(&self, engagement: &Engagement, limits: &[f64]) -> Vec<Statistics> {
+        let source = self.source(engagement);
+        self.each(engagement, |o| {
+            let means = self.mean(&source, o);
+            let (distribution, whitecaps) = self.distribution(&source, o);
+            Statistics {
+                mean: means.f,
+                std: (means.f_squared - means.f * means.f).max(0.0).sqrt(),
+                sem: 0.0,
+                min: f64::NAN,
+                quantiles: QUANTILES.map(|level| distribution.quantile(level)),
+                max: f64::NAN,
+                mean_f_cos: means.f_cos,
+                obscured: distribution.nothing(),
+                whitecap: whitecaps,
+                over: limits.iter().map(|limit| distribution.over(*limit)).collect(),
+            }
+        })
+    }
+
+    /// Directions to the observers, in parallel where there are many.
+    fn each<T: Send>(&self, engagement: &Engagement, of: impl Fn(DVec3) -> T + Sync) -> Vec<T> {
+        let (laser, beam) = (DVec3::from(engagement.laser()), DVec3::from(engagement.direction()));
+        let place = laser - laser.z / beam.z * beam;
+        let to = |observer: &[f64; 3]| of((DVec3::from(*observer) - place).normalize());
+        engagement.observers().par_iter().with_min_len(8).map(to).collect()
+    }
+
+    fn source(&self, engagement: &Engagement) -> Source {
+        let direction = -DVec3::from(engagement.direction());
+        let lit = self.slopes.as_ref().map_or(direction.z, |slopes| {
+            // Slopes have no mean: where all face the source the area shown is that of the level surface.
+            let spread = slopes.spread(self.in_wind(direction.truncate()));
+            if direction.z > DENSITY_END * spread {
+                direction.z
+            } else {
+                self.sum(slopes, FINE, |s, p, _| p * shown(s, direction))
+            }
+        });
+        Source { direction, lit }
+    }
+
+    /// What waves leave visible of the hits to an observer above them, on average.
+    fn visible(&self, source: &Source, o: DVec3) -> f64 {
+        let Some(slopes) = self.slopes.as_ref().filter(|_| self.obscuration) else { return 1.0 };
+        let lambda = |v: DVec3| {
+            let spread = SQRT_2 * slopes.spread(self.in_wind(v.truncate()));
+            hidden(v.z.max(1e-9), spread) / v.z.max(1e-9)
+        };
+        let (i, o) = (lambda(source.direction), lambda(o));
+        (1.0 + i) / (1.0 + i + o)
+    }
+
+    fn mean(&self, source: &Source, o: DVec3) -> Means {
+        let lobe = &self.water.lobe;
+        let i = source.direction;
+        let Some(slopes) = &self.slopes else {
+            let f = if o.z > 0.0 { lobe.facets.eval(i.into(), o.into(), [0.0, 0.0, 1.0]) } else { 0.0 };
+            return Means { f, f_cos: f * o.z.max(0.0), f_squared: f * f };
+        };
+        let mut means = Means::default();
+        self.integrate(slopes, i, o, |s, weight, density, capped| {
+            let n = DVec3::from(normal(s.into()));
+            let f = lobe.facets.eval(i.into(), o.into(), n.into());
+            let weight = weight * (density - capped) * shown(s, i);
+            means.f += weight * f;
+            means.f_cos += weight * f * n.dot(o);
+            means.f_squared += weight * f * f;
+        });
+        if slopes.capped.is_some() {
+            let f = lobe.whitecap_brdf;
+            let foam = |cosine: &dyn Fn(DVec2) -> f64| {
+                self.sum(slopes, COARSE, |s, _, capped| {
+                    if shown(s, o) > 0.0 { capped * shown(s, i) * cosine(s) } else { 0.0 }
+                })
+            };
+            let share = foam(&|_| 1.0);
+            means.f += f * share;
+            means.f_squared += f * f * share;
+            means.f_cos += f * foam(&|s| DVec3::from(normal(s.into())).dot(o));
+        }
+        let scale = self.visible(source, o) / source.lit;
+        Means { f: scale * means.f, f_cos: scale * means.f_cos, f_squared: scale * means.f_squared }
+    }
+
+    /// Calls `add` with slope, area, density and W at the nodes of a rectangle that holds where the drawn slopes and
+    /// the facets' lobe meet.
+    fn integrate(&self, slopes: &Slopes, i: DVec3, o: DVec3, mut add: impl FnMut(DVec2, f64, f64, f64)) {
+        let h = i + o;
+        // The slope that mirrors the source to the observer, and how far facets let the wave's slope be from it.
+        let specular = self.in_wind(-h.truncate() / h.z);
+        let lobe = facet_spread(&self.water.lobe.facets, specular);
+        // Were both Gaussian, their product would be one about here.
+        let (drawn, needed) = (1.0 / (slopes.sigma * slopes.sigma), 1.0 / (lobe * lobe));
+        let (middle, both) = (specular * needed / (drawn + needed), (drawn + needed).powf(-0.5));
+        let low = (middle - PRODUCT_END * both).min(specular - LOBE_END * lobe).max(-slopes.end());
+        let high = (middle + PRODUCT_END * both).max(specular + LOBE_END * lobe).min(slopes.end());
+        if low.x >= high.x || low.y >= high.y {
+            return;
+        }
+
+        // Along the view's azimuth slopes end where they turn away from the observer, or from a source in line.
+        let along = if o.truncate().length() > 1e-6 { o.truncate() } else { i.truncate() };
+        let along = along.try_normalize().unwrap_or(DVec2::X);
+        let (e, f) = (self.in_wind(along), self.in_wind(along.perp()));
+        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let reach = |axis: DVec2| {
+            let extent = (axis.x * half.x).hypot(axis.y * half.y);
+            [axis.dot(centre) - extent, axis.dot(centre) + extent]
+        };
+        let in_line = i.truncate().perp_dot(along).abs() < 1e-3 * i.truncate().length();
+        let [start, end] = reach(e);
+        let (mut first, mut last) = (start, end);
+        for v in [Some(o), in_line.then_some(i)].into_iter().flatten() {
+            let tip = v.z / along.dot(v.truncate());
+            if tip >= 0.0 { last = last.min(tip) } else { first = first.max(tip) }
+        }
+        let [left, right] = reach(f);
+        let finest = lobe.min(slopes.sigma);
+        let columns = if first > start || last < end {
+            self.rule
+                .iter()
+                .map(|(x, w)| (0.5 * (first + last) + 0.5 * (last - first) * x, 0.5 * (last - first) * w))
+                .collect()
+        } else {
+            midpoints(start, end, STEP * (e * finest).length())
+        };
+        if first >= last {
+            return;
+        }
+        for (y, height) in midpoints(left, right, STEP * (f * finest).length()) {
+            for (x, width) in &columns {
+                let slope = e * *x + f * y;
+                let density = slopes.density.at(slope.into());
+                let capped = slopes.capped.as_ref().map_or(0.0, |table| table.at(slope.into()));
+                add(self.in_world(slope), width * height, density, capped);
+            }
+        }
+    }
+
+    /// Sum of `of(slope, density, W)` over the nodes of the table, every `stride`th, times their area.
+    fn sum(&self, slopes: &Slopes, stride: usize, mut of: impl FnMut(DVec2, f64, f64) -> f64) -> f64 {
+        let table = &slopes.density;
+        let mut sum = 0.0;
+        slopes.nodes(stride, |slope, density, capped| sum += of(self.in_world(slope), density, capped));
+        sum * table.steps[0] * table.steps[1] * (stride * stride) as f64
+    }
+
+    /// The distribution of f over the hits, and the share of whitecaps among them.
+    fn distribution(&self, source: &Source, o: DVec3) -> (Distribution, f64) {
+        let lobe = &self.water.lobe;
+        let i = source.direction;
+        let visible = self.visible(source, o);
+        let mut values = vec![];
+        let mut foam = 0.0;
+        let Some(slopes) = &self.slopes else {
+            let f = self.mean(source, o).f;
+            return (Distribution::new(vec![(f, f64::from(o.z > 0.0))]), 0.0);
+        };
+        let area = self.sum(slopes, FINE, |s, density, capped| {
+            let shown_to_source = shown(s, i);
+            let weight = (density - capped).max(0.0) * shown_to_source;
+            foam += capped * shown_to_source;
+            if shown(s, o) > 0.0 && shown_to_source > 0.0 {
+                let f = lobe.facets.eval(i.into(), o.into(), normal(s.into()));
+                values.push((f, visible * weight));
+                values.push((lobe.whitecap_brdf, visible * capped * shown_to_source));
+            }
+            density * shown_to_source
+        });
+        let node = slopes.density.steps[0] * slopes.density.steps[1] * (FINE * FINE) as f64;
+        values.iter_mut().for_each(|(_, weight)| *weight *= node / area);
+        (Distribution::new(values), foam * node / area)
+    }
+
+    /// A horizontal vector in components upwind and crosswind.
+    fn in_wind(&self, v: DVec2) -> DVec2 {
+        DVec2::new(v.dot(self.wind), v.dot(self.wind.perp()))
+    }
+
+    fn in_world(&self, v: DVec2) -> DVec2 {
+        v.x * self.wind + v.y * self.wind.perp()
+    }
+}
+
+/// The source's direction and the area that the surface shows it, per level area.
+struct Source {
+    direction: DVec3,
+    lit: f64,
+}
+
+/// The area that a slope shows a direction, per level area: `max(0, N.v)/N_z`.
+fn shown(slope: DVec2, v: DVec3) -> f64 {
+    (v.z - slope.dot(v.truncate())).max(0.0)
+}
+
+/// How far, in slope, facets reach about the slope that mirrors: a tilt's standard deviation in slopes there.
+fn facet_spread(facets: &Facets<f64>, specular: DVec2) -> DVec2 {
+    let widened = if facets.slope_measure { DVec2::ONE } else { DVec2::ONE + specular * specular };
+    DVec2::new(facets.sigma_u, facets.sigma_c) * widened
+}
+
+impl Slopes {
+    fn new(component: &Component, water: &Water) -> Self {
+        let components = f64::from(water.parameters.components);
+        let [u, c, _] = component.variances(components).map(f64::sqrt);
+        let [bound_u, bound_c, _] = component.bounds(components);
+        let facets = [water.lobe.facets.sigma_u, water.lobe.facets.sigma_c];
+        let axes =
+            [(u, bound_u, facets[0], 0), (c, bound_c, facets[1], 1)].map(|(sigma, bound, facet, axis)| {
+                let half_period = (DENSITY_END * sigma).min(1.05 * bound);
+                let step = PI / half_period;
+                let finest = sigma.min(facet);
+                let count = (FREQUENCIES[1] / finest / step) as usize + 2;
+                let frequencies: Vec<f64> = (0..count).map(|n| n as f64 * step).collect();
+                let on_axis = match axis {
+                    0 => component.slope(&frequencies, &[0.0]),
+                    _ => component.slope(&[0.0], &frequencies),
+                };
+                let used =
+                    on_axis.iter().rposition(|c| c.abs().powf(components) > NEGLIGIBLE).unwrap_or(0) + 2;
+                let frequencies: Vec<f64> = frequencies.into_iter().take(used).collect();
+                let fine = (DENSITY_STEP * sigma).min(1.0 / (used as f64 * step));
+                Axis { frequencies, finest, step: fine, count: (half_period / fine) as usize }
+            });
+        let [upwind, crosswind] = &axes;
+        let transform = |mut spectrum: Vec<f64>| {
+            for (row, u) in spectrum.chunks_mut(crosswind.frequencies.len()).zip(&upwind.frequencies) {
+                for (value, c) in row.iter_mut().zip(&crosswind.frequencies) {
+                    *value *= taper(u * upwind.finest) * taper(c * crosswind.finest);
+                }
+            }
+            let frequencies = [&upwind.frequencies[..], &crosswind.frequencies];
+            let (steps, counts) = ([upwind.step, crosswind.step], [upwind.count, crosswind.count]);
+            SlopeTable::transform(&spectrum, frequencies, steps, counts)
+        };
+        let slope = component.slope(&upwind.frequencies, &crosswind.frequencies);
+        Self {
+            sigma: DVec2::new(u, c),
+            density: transform(slope.into_iter().map(|c| c.powi(components as i32)).collect()),
+            capped: caps(component, water, &upwind.frequencies, &crosswind.frequencies).map(transform),
+        }
+    }
+
+    /// Where the tables end.
+    fn end(&self) -> DVec2 {
+        let [u, c] = [0, 1].map(|axis| self.density.counts[axis] as f64 * self.density.steps[axis]);
+        DVec2::new(u, c)
+    }
+
+    /// Standard deviation of the slope along a horizontal vector upwind and crosswind, times its length.
+    fn spread(&self, along: DVec2) -> f64 {
+        (self.sigma * along).length()
+    }
+
+    /// Every `stride`th node of the tables with its mirror images: slope upwind and crosswind, density and W.
+    fn nodes(&self, stride: usize, mut call: impl FnMut(DVec2, f64, f64)) {
+        let [rows, columns] = self.density.counts;
+        for i in (0..rows).step_by(stride) {
+            for j in (0..columns).step_by(stride) {
+                let slope = DVec2::new(i as f64 * self.density.steps[0], j as f64 * self.density.steps[1]);
+                let density = self.density.node(i, j);
+                let capped = self.capped.as_ref().map_or(0.0, |table| table.node(i, j));
+                for u in if i == 0 { &[1.0][..] } else { &[1.0, -1.0] } {
+                    for c in if j == 0 { &[1.0][..] } else { &[1.0, -1.0] } {
+                        call(slope * DVec2::new(*u, *c), density, capped);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Frequencies and slopes along the wind or across it.
+struct Axis {
+    frequencies: Vec<f64>,
+    /// The smaller one of the standard deviations of facets and drawn slopes.
+    finest: f64,
+    /// Between slopes of the table.
+    step: f64,
+    count: usize,
+}
+
+/// 1 falling smoothly to 0 between the ends of [`FREQUENCIES`].
+fn taper(x: f64) -> f64 {
+    let [start, end] = FREQUENCIES;
+    let t = ((x - start) / (end - start)).clamp(0.0, 1.0);
+    (0.5 * PI * t).cos().powi(2)
+}
+
+/// Middles and widths of equal parts of an interval, none wider than `step`.
+fn midpoints(start: f64, end: f64, step: f64) -> Vec<(f64, f64)> {
+    let count = ((end - start) / step).ceil().max(1.0);
+    let width = (end - start) / count;
+    (0..count as usize).map(|i| (start + (i as f64 + 0.5) * width, width)).collect()
+}
+
+/// The transform of W over the slope's frequencies; `None` where whitecaps are off or too rare to matter.
+fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64]) -> Option<Vec<f64>> {
+    if !water.parameters.whitecaps {
+        return None;
+    }
+    let count = f64::from(water.parameters.components);
+    let (sigma, bound) = (component.variances(count)[2].sqrt(), component.bounds(count)[2]);
+    let ends = whitecap::onset(water.wind.friction_velocity).map(|a| 0.01 * a);
+    if ends[1] <= -bound {
+        return None;
+    }
+    let half_period = 1.05 * bound.min(7.0 * sigma);
+    let step = PI / half_period;
+    let frequencies: Vec<f64> =
+        (0..).map(|n| f64::from(n) * step).take_while(|r| *r < 10.0 / sigma).collect();
+    let weights = falling(ends, &frequencies);
+    let sum = |row: &[f64]| row.iter().zip(&weights).map(|(c, w)| w * c.powi(count as i32)).sum::<f64>();
+    if sum(&component.slope_and_acceleration(&[0.0], &[0.0], &frequencies)) < RARE {
+        return None;
+    }
+    let joint = component.slope_and_acceleration(upwind, crosswind, &frequencies);
+    Some(joint.chunks(frequencies.len()).map(sum).collect())
+}
+
+/// A distribution of values not below 0, the rest of the probability at 0.
+struct Distribution {
+    /// Values in order, each with the probability of all up to and half its own.
+    steps: Vec<(f64, f64)>,
+    total: f64,
+}
+
+impl Distribution {
+    fn new(mut values: Vec<(f64, f64)>) -> Self {
+        values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let total = values.iter().map(|v| v.1).sum();
+        let mut below = 1.0 - total;
+        let steps = values
+            .into_iter()
+            .map(|(value, weight)| {
+                below += weight;
+                (value, below - 0.5 * weight)
+            })
+            .collect();
+        Self { steps, total }
+    }
+
+    /// Probability of nothing at all.
+    fn nothing(&self) -> f64 {
+        (1.0 - self.total).max(0.0)
+    }
+
+    fn quantile(&self, level: f64) -> f64 {
+        let next = self.steps.partition_point(|(_, probability)| *probability < level);
+        match (next.checked_sub(1).map(|i| self.steps[i]), self.steps.get(next)) {
+            (None, Some(_)) => 0.0,
+            (Some((a, p)), Some((b, q))) => a + (b - a) * (level - p) / (q - p),
+            (last, None) => last.map_or(0.0, |(value, _)| value),
+        }
+    }
+
+    /// Probability of more than a limit.
+    fn over(&self, limit: f64) -> f64 {
+        let next = self.steps.partition_point(|(value, _)| *value <= limit);
+        let up_to = match (next.checked_sub(1).map(|i| self.steps[i]), self.steps.get(next)) {
+            (None, _) => return self.total,
+            (Some((a, p)), Some((b, q))) => p + (q - p) * (limit - a) / (b - a),
+            (Some(_), None) => 1.0,
+        };
+        (1.0 - up_to).clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,232 @@
+//! Exact statistics against draws: of slopes alone, where nothing is obscured, and of the full ray cast.
+
+mod common;
+
+use common::{direction, dot, water};
+use prob_water::waves::Numbers;
+use prob_water::{Engagement, Ensemble, Exact, Surface, Water, whitecap};
+use rayon::prelude::*;
+
+fn sea(friction_velocity: f64, footprint: f64, components: u32) -> Water {
+    water(friction_velocity, |p| {
+        p.surface = Surface::Instance;
+        p.footprint = footprint;
+        p.components = components;
+        p.wind_direction = 20.0;
+        p.whitecaps = true;
+    })
+}
+
+/// Views in the plane of incidence and out of it (Eq. 82).
+fn views(incidence: f64, highest: f64) -> Vec<[f64; 3]> {
+    let steps = (highest / 5.0) as i32;
+    let in_plane = (-steps..=steps).map(|a| direction(5.0 * f64::from(a), 0.0));
+    let (s, c) = incidence.to_radians().sin_cos();
+    let out_of_plane = (1..=steps).map(|a| {
+        let (sp, cp) = (5.0 * f64::from(a)).to_radians().sin_cos();
+        [s * cp, sp, c * cp]
+    });
+    in_plane.chain(out_of_plane).filter(|v| v[2] > (highest + 0.1).to_radians().cos()).collect()
+}
+
+/// Sums over draws of A, A f, A f^2, A f cos and of the squares that the errors need.
+#[derive(Clone, Default)]
+struct Sums {
+    area: f64,
+    area2: f64,
+    /// f, f^2, f cos.
+    values: Vec<[f64; 3]>,
+    squares: Vec<[f64; 3]>,
+    products: Vec<[f64; 3]>,
+}
+
+/// Draws that are summed by themselves, so that sums do not depend on threads.
+const BATCH: u64 = 2000;
+
+/// Weighted mean and its standard error, of f, f^2 and f cos, for every view.
+fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec<[(f64, f64); 3]> {
+    let waves = water.waves();
+    let w = water.wind.friction_velocity;
+    let zero = || Sums {
+        values: vec![[0.0; 3]; views.len()],
+        squares: vec![[0.0; 3]; views.len()],
+        products: vec![[0.0; 3]; views.len()],
+        ..Sums::default()
+    };
+    let batch = |b: u64| {
+        let mut sums = zero();
+        for instance in b * BATCH..(b + 1) * BATCH {
+            let mut numbers = Numbers::new(1, instance);
+            let chance = numbers.next();
+            let point = waves.surface(&mut numbers, 0.0).point([0.0; 2]);
+            let n = point.normal();
+            let area = (dot(n, source) / n[2]).max(0.0);
+            let foam = chance < whitecap::probability(w, 100.0 * point.acceleration);
+            sums.area += area;
+            sums.area2 += area * area;
+            if area <= 0.0 {
+                continue;
+            }
+            for (v, view) in views.iter().enumerate() {
+                let cos = dot(n, *view);
+                let f = match (cos > 0.0, foam) {
+                    (false, _) => 0.0,
+                    (true, true) => water.lobe.whitecap_brdf,
+                    (true, false) => water.lobe.facets.eval(source, *view, n),
+                };
+                for (m, value) in [f, f * f, f * cos].into_iter().enumerate() {
+                    sums.values[v][m] += area * value;
+                    sums.squares[v][m] += (area * value).powi(2);
+                    sums.products[v][m] += area * area * value;
+                }
+            }
+        }
+        sums
+    };
+    let add = |mut a: Sums, b: Sums| {
+        a.area += b.area;
+        a.area2 += b.area2;
+        for (to, from) in
+            [(&mut a.values, b.values), (&mut a.squares, b.squares), (&mut a.products, b.products)]
+        {
+            for (to, from) in to.iter_mut().zip(from) {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+            }
+        }
+        a
+    };
+    let all = (0..draws / BATCH).into_par_iter().map(batch).reduce(zero, add);
+    (0..views.len())
+        .map(|v| {
+            std::array::from_fn(|m| {
+                let mean = all.values[v][m] / all.area;
+                let spread = all.squares[v][m] - 2.0 * mean * all.products[v][m] + mean * mean * all.area2;
+                (mean, spread.max(0.0).sqrt() / all.area)
+            })
+        })
+        .collect()
+}
+
+/// The largest of some deviations, each over what is allowed.
+#[derive(Default)]
+struct Worst {
+    deviation: f64,
+    text: String,
+}
+
+impl Worst {
+    /// Allowed is a share of the expected value and 4 standard errors.
+    fn add(&mut self, found: f64, expected: f64, share: f64, error: f64, what: impl Fn() -> String) {
+        let deviation = (found - expected).abs() / (share * expected + 4.0 * error);
+        if deviation > self.deviation {
+            let percent = 100.0 * (found / expected - 1.0);
+            let (deviation, text) = (deviation, format!("{}: {percent:+.2} %", what()));
+            *self = Self { deviation, text };
+        }
+    }
+}
+
+/// Means within 0.2 % and standard deviations within 1 %, plus 4 standard errors, wherever the mean exceeds 1 % of its
+/// peak.
+fn compare_without_obscuration(water: &Water, incidence: f64, draws: u64) -> Worst {
+    let views = views(incidence, 85.0);
+    let engagement = Engagement::far(incidence, 1e6, &views, 1e8).unwrap();
+    let mut exact = Exact::new(water).unwrap();
+    exact.obscuration = false;
+    let means = exact.means(&engagement);
+    let drawn = drawn(water, engagement.direction().map(|x| -x), &views, draws);
+    let peak = drawn.iter().map(|d| d[0].0).fold(0.0, f64::max);
+    let mut worst = Worst::default();
+    for (view, (exact, drawn)) in views.iter().zip(means.iter().zip(drawn)) {
+        let [(mean, sem), (square, square_error), (cos, cos_error)] = drawn;
+        if mean < 0.01 * peak {
+            continue;
+        }
+        let std = (square - mean * mean).sqrt();
+        let std_error = square_error.hypot(2.0 * mean * sem) / (2.0 * std);
+        let exact_std = (exact.f_squared - exact.f * exact.f).sqrt();
+        let at = |what| move || format!("{what} towards {view:.2?}");
+        worst.add(exact.f, mean, 0.002, sem, at("mean"));
+        worst.add(exact.f_cos, cos, 0.002, cos_error, at("mean_f_cos"));
+        worst.add(exact_std, std, 0.01, std_error, at("std"));
+    }
+    worst
+}
+
+/// Means within 2 % plus 4 standard errors of the ray cast, for views to 70 degrees, wherever the mean exceeds 1 % of its
+/// peak.
+fn compare_with_the_ray_cast(water: &Water, incidence: f64) -> Worst {
+    let views = views(incidence, 70.0);
+    let engagement = Engagement::far(incidence, 10e3, &views, 1e6).unwrap();
+    let exact = Exact::new(water).unwrap().means(&engagement);
+    let samples = Ensemble::new(water).sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
+    let drawn: Vec<_> = (0..views.len()).map(|o| samples.statistics(0, o, &[])).collect();
+    let peak = drawn.iter().map(|d| d.mean).fold(0.0, f64::max);
+    let mut worst = Worst::default();
+    for (view, (exact, drawn)) in views.iter().zip(exact.iter().zip(drawn)) {
+        if drawn.mean > 0.01 * peak {
+            worst.add(exact.f, drawn.mean, 0.02, drawn.sem, || format!("mean towards {view:.2?}"));
+        }
+    }
+    worst
+}
+
+fn campaign(seas: impl Iterator<Item = (f64, f64, u32, f64)>, compare: impl Fn(f64, f64, u32, f64) -> Worst) {
+    let mut worst = Worst::default();
+    for (w, footprint, components, incidence) in seas {
+        let here = compare(w, footprint, components, incidence);
+        let sea = format!("w* {w} D {footprint} M {components} theta_i {incidence}");
+        println!("{sea}: {:.2} of what is allowed, {}", here.deviation, here.text);
+        if here.deviation > worst.deviation {
+            worst = Worst { deviation: here.deviation, text: format!("{sea}: {}", here.text) };
+        }
+    }
+    println!("worst: {:.2} of what is allowed, {}", worst.deviation, worst.text);
+    assert!(worst.deviation < 1.0, "{}", worst.text);
+}
+
+/// Every wind, footprint, number of components and incidence.
+fn all(winds: &[f64]) -> impl Iterator<Item = (f64, f64, u32, f64)> {
+    let pairs = winds.iter().flat_map(|w| [0.05, 0.15, 0.5].map(|d| (*w, d)));
+    let triples = pairs.flat_map(|(w, d)| [5, 20].map(|m| (w, d, m)));
+    triples.flat_map(|(w, d, m)| [0.0, 30.0, 60.0, 75.0].map(|i| (w, d, m, i)))
+}
+
+const SLICE: [(f64, f64, u32, f64); 6] = [
+    (2.0, 0.05, 5, 30.0),
+    (2.0, 0.5, 20, 75.0),
+    (8.0, 0.15, 5, 30.0),
+    (24.0, 0.5, 10, 0.0),
+    (24.0, 0.15, 20, 60.0),
+    (56.0, 0.05, 5, 75.0),
+];
+
+#[test]
+fn without_obscuration() {
+    campaign(SLICE.into_iter(), |w, d, m, i| compare_without_obscuration(&sea(w, d, m), i, 100_000));
+}
+
+#[test]
+#[ignore = "long: `cargo xtask verify` runs it"]
+fn without_obscuration_everywhere() {
+    let seas = all(&[2.0, 8.0, 24.0, 56.0]);
+    campaign(seas, |w, d, m, i| compare_without_obscuration(&sea(w, d, m), i, 1_000_000));
+}
+
+fn with_instances(mut water: Water, instances: u64) -> Water {
+    water.parameters.instances = instances;
+    water
+}
+
+#[test]
+fn with_obscuration() {
+    let seas = SLICE.into_iter().filter(|sea| sea.0 > 2.0);
+    campaign(seas, |w, d, m, i| compare_with_the_ray_cast(&with_instances(sea(w, d, m), 30_000), i));
+}
+
+#[test]
+#[ignore = "long: `cargo xtask verify` runs it"]
+fn with_obscuration_everywhere() {
+    let seas = all(&[4.0, 8.0, 24.0, 56.0]);
+    campaign(seas, |w, d, m, i| compare_with_the_ray_cast(&with_instances(sea(w, d, m), 200_000), i));
+}
