@@ -69,6 +69,10 @@ Wind-roughened water (:monosp:`prob_water`)
    - |string|
    - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives. (Default: flat)
 
+ * - components, instances, seed, time, depth, fetch
+   - |float|
+   - The vocabulary's words for drawn waves: checked, but a flat surface has none.
+
  * - wavelength
    - |float|
    - Wavelength in micrometres of the refractive index and the whitecaps, 0.2 to 200; spectral

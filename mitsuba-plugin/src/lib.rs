@@ -3,7 +3,7 @@
 use prob_water::brdf::{Parts, up};
 use prob_water::real::IERFC;
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
-use prob_water::{Error, Lobe, Sample};
+use prob_water::{Error, Lobe, Sample, Surface};
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
@@ -81,7 +81,7 @@ impl Options {
     }
 
     fn configure(&self) -> Result<Box<Water>, Error> {
-        let water = self.0.parameters()?.configure()?;
+        let water = self.0.parameters()?.configure()?.on(Surface::Flat)?;
         Ok(Box::new(Water { water, lobe: water.lobe.cast() }))
     }
 }

@@ -11,7 +11,7 @@ use crate::batch::{Rows, check_units};
 use crate::brdf::up;
 use crate::real::Vec3;
 use crate::vocabulary::{Builder, Value};
-use crate::{Error, Lobe, Real, Water};
+use crate::{Error, Lobe, Real, Surface, Water};
 
 /// What a call came to. Anything but OK leaves outputs untouched and a message in
 /// `prob_water_last_error`.
@@ -215,7 +215,8 @@ pub unsafe extern "C" fn prob_water_configure(
         let options = unsafe { options.as_ref() }.ok_or_else(|| null("options"))?;
         // SAFETY: by this function's contract.
         let sea = unsafe { sea.as_mut() }.ok_or_else(|| null("sea"))?;
-        let water = options.builder.parameters().and_then(|p| p.configure()).map_err(refused)?;
+        let configured = options.builder.parameters().and_then(|p| p.configure());
+        let water = configured.and_then(|water| water.on(Surface::Flat)).map_err(refused)?;
         *sea = Box::into_raw(Box::new(ProbWater { water, single: water.lobe.cast() }));
         Ok(())
     })

@@ -33,6 +33,9 @@ pub struct Ensemble {
     pub draws: Draws,
     /// How whitecaps take part.
     pub presence: Presence,
+    /// Place in m and time in s at which the drawn phases count. Any will do, but evenly spread phases help most where
+    /// the beam meets the water: [`Ensemble::around`].
+    pub phases_at: ([f64; 2], f64),
 }
 
 /// Where the beam met the water in one instance.
@@ -64,7 +67,7 @@ pub struct Statistics {
     pub mean: f64,
     /// Standard deviation over N, not N - 1.
     pub std: f64,
-    /// Standard error of the mean, std/sqrt(N) (too large where draws are stratified); 0 for infinitely many.
+    /// Standard error of the mean, std/sqrt(N) (an overestimate for Sobol draws); 0 for infinitely many.
     pub sem: f64,
     /// Smallest; not a number for infinitely many.
     pub min: f64,
@@ -88,7 +91,19 @@ pub const QUANTILES: [f64; 4] = [0.05, 0.50, 0.95, 0.99];
 impl Ensemble {
     /// The report's: random draws and drawn whitecaps.
     pub fn new(water: &Water) -> Self {
-        Self { water: *water, waves: water.waves(), draws: Draws::Random, presence: Presence::Drawn }
+        Self {
+            water: *water,
+            waves: water.waves(),
+            draws: Draws::Random,
+            presence: Presence::Drawn,
+            phases_at: ([0.0; 2], 0.0),
+        }
+    }
+
+    /// The same, with Sobol draws whose phases count where and when this engagement's beam meets the mean surface.
+    pub fn around(self, engagement: &Engagement) -> Self {
+        let [x, y, _] = engagement.target();
+        Self { draws: Draws::Sobol, phases_at: ([x, y], engagement.time()), ..self }
     }
 
     /// Refuses an engagement whose samples would take more than [`MEMORY`].
@@ -160,9 +175,10 @@ impl Ensemble {
         mut observations: &mut [Observation],
     ) {
         let p = &self.water.parameters;
-        let mut numbers = Numbers::of(self.draws, p.seed, instance, p.instances);
+        let mut numbers = Numbers::new(self.draws, p.seed, instance);
         let chance = numbers.next();
-        worker.surface.draw(self.waves.components(&mut numbers));
+        let (place, time) = self.phases_at;
+        worker.surface.draw(self.waves.components(&mut numbers).map(|c| c.with_phase_at(place, time)));
         for (engagement, hit) in group.iter().zip(hits) {
             let (now, later) = observations.split_at_mut(engagement.observers().len());
             observations = later;

@@ -127,8 +127,7 @@ impl Exact {
 
     /// Directions to the observers, in parallel where there are many.
     fn each<T: Send>(&self, engagement: &Engagement, of: impl Fn(DVec3) -> T + Sync) -> Vec<T> {
-        let (laser, beam) = (DVec3::from(engagement.laser()), DVec3::from(engagement.direction()));
-        let place = laser - laser.z / beam.z * beam;
+        let place = DVec3::from(engagement.target());
         let to = |observer: &[f64; 3]| of((DVec3::from(*observer) - place).normalize());
         engagement.observers().par_iter().with_min_len(8).map(to).collect()
     }

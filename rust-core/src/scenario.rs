@@ -32,7 +32,7 @@ pub struct Engagement {
 impl Engagement {
     /// Time in s, positions in m: all finite, laser and observers above the mean surface, the beam downwards.
     pub fn new(time: f64, laser: [f64; 3], aim: Aim, observers: &[[f64; 3]]) -> Result<Self, Error> {
-        if !(time.abs() <= LONGEST_TIME) {
+        if !(-LONGEST_TIME..=LONGEST_TIME).contains(&time) {
             return refuse("time", time, "finite, at most 1e9 s from 0");
         }
         position("laser", laser)?;
@@ -80,6 +80,12 @@ impl Engagement {
     /// Unit vector along the beam.
     pub fn direction(&self) -> [f64; 3] {
         self.direction
+    }
+
+    /// Where the beam meets the mean surface, m.
+    pub fn target(&self) -> [f64; 3] {
+        let (laser, beam) = (DVec3::from(self.laser), DVec3::from(self.direction));
+        (laser - laser.z / beam.z * beam).truncate().extend(0.0).into()
     }
 
     /// m.

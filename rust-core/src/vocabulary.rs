@@ -168,6 +168,19 @@ impl Parameters {
     }
 }
 
+impl Water {
+    /// The same, if its surface is the one that the caller knows.
+    pub fn on(self, surface: Surface) -> Result<Self, Error> {
+        let name =
+            |surface: &Surface| word(surface, &SURFACES).map_or(String::new(), |name| name.to_string());
+        if self.parameters.surface == surface {
+            return Ok(self);
+        }
+        let value = name(&self.parameters.surface);
+        Err(Error::UnknownChoice { parameter: "surface", value, allowed: name(&surface) })
+    }
+}
+
 /// The parameters in force, a `name = value` a line, and what follows from them.
 impl std::fmt::Display for Water {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -382,6 +395,20 @@ mod tests {
                 .to_string();
             assert!(error.contains(name) && error.contains(&value.to_string()), "{error}");
         }
+    }
+
+    #[test]
+    fn footprint_follows_the_surface() {
+        let mut builder = Builder::default();
+        assert_eq!(builder.parameters().unwrap().footprint, f64::INFINITY);
+        builder.set("surface", &Value::Text("instance".into())).unwrap();
+        assert_eq!(builder.parameters().unwrap().footprint, 0.15);
+        builder.set("footprint", &Value::Text("inf".into())).unwrap();
+        let water = builder.parameters().unwrap().configure().unwrap();
+        assert_eq!(water.parameters.footprint, f64::INFINITY);
+        let refused = water.on(Surface::Flat).unwrap_err().to_string();
+        assert_eq!(refused, "surface = instance is unknown: allowed is flat");
+        assert!(water.on(Surface::Instance).is_ok());
     }
 
     #[test]

@@ -5,6 +5,9 @@
 //! with the seed as the first eight bytes of its key (little endian, the rest 0), no nonce, and the instance's number as
 //! the stream. A uniform number is the upper 53 bits of the next 64, over 2^53. The first decides about the whitecap,
 //! then every component takes three: wave number, phase, azimuth. More components do not change the first ones.
+//!
+//! [`Draws::Sobol`] replaces the upper 24 bits of the first 256 numbers by Burley's hashed Sobol sequence, its 65536 points
+//! by a new scramble for every 65536 instances.
 
 use crate::spectrum::{Spectrum, spreading};
 use crate::surface::Surface;
@@ -18,9 +21,9 @@ pub enum Draws {
     /// Independently, as in the report.
     #[default]
     Random,
-    /// In a Latin hypercube over the instances: each instance by itself is distributed as in the report, and every
-    /// number is spread evenly over all of them. A mean over instances keeps its expectation and loses spread.
-    Stratified,
+    /// By an Owen-scrambled Sobol sequence: each instance by itself is distributed as in the report, and all of them
+    /// cover the possible draws evenly. A mean over instances keeps its expectation and loses spread.
+    Sobol,
 }
 
 /// One drawn wave, in metres and seconds.
@@ -36,6 +39,15 @@ pub struct Component {
     pub amplitude: f64,
     /// omega, rad/s.
     pub frequency: f64,
+}
+
+impl Component {
+    /// The wave that has this one's phase at a place in m and a time in s (Eq. 31) instead of at the origin at 0.
+    pub fn with_phase_at(self, [x, y]: [f64; 2], time: f64) -> Self {
+        let (sin, cos) = self.azimuth.sin_cos();
+        let since = self.frequency * time + self.wave_number * (x * cos + y * sin);
+        Self { phase: (self.phase - since) % TAU, ..self }
+    }
 }
 
 /// What the components of a sea are drawn from.
@@ -100,61 +112,44 @@ impl Waves {
 /// The uniform numbers of one instance.
 pub struct Numbers {
     stream: ChaCha8Rng,
-    strata: Option<Strata>,
+    sobol: Option<Point>,
 }
 
-/// One cell of a Latin hypercube.
-struct Strata {
-    seed: u64,
-    instance: u64,
-    instances: u64,
-    dimension: u64,
+/// A point of a Sobol sequence.
+struct Point {
+    index: u32,
+    scramble: u32,
+    dimension: u32,
 }
+
+/// Points of a sequence, as a power of 2.
+const SEQUENCE: u32 = 16;
 
 impl Numbers {
-    /// The independent numbers of an instance.
-    pub fn new(seed: u64, instance: u64) -> Self {
+    /// The numbers of an instance.
+    pub fn new(draws: Draws, seed: u64, instance: u64) -> Self {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         let mut stream = ChaCha8Rng::from_seed(key);
         stream.set_stream(instance);
-        Self { stream, strata: None }
-    }
-
-    /// The numbers of an instance that is one of many.
-    pub fn of(draws: Draws, seed: u64, instance: u64, instances: u64) -> Self {
-        let mut numbers = Self::new(seed, instance);
-        if draws == Draws::Stratified {
-            numbers.strata = Some(Strata { seed, instance, instances, dimension: 0 });
-        }
-        numbers
+        let sobol = (draws == Draws::Sobol).then(|| Point {
+            index: instance as u32 & ((1 << SEQUENCE) - 1),
+            scramble: mix(seed ^ mix(instance >> SEQUENCE)) as u32,
+            dimension: 0,
+        });
+        Self { stream, sobol }
     }
 
     /// The next number, of [0, 1).
     #[allow(clippy::should_implement_trait)]
     pub fn next(&mut self) -> f64 {
         let u = (self.stream.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-        let Some(s) = &mut self.strata else { return u };
-        let key = mix(s.seed ^ mix(s.dimension));
-        s.dimension += 1;
-        let u = (shuffled(s.instance, s.instances, key) as f64 + u) / s.instances as f64;
-        u.min(1.0 - f64::EPSILON / 2.0)
-    }
-}
-
-/// The place of `index` in a random order of `length` things: a Feistel network, walked until it falls among them.
-fn shuffled(index: u64, length: u64, key: u64) -> u64 {
-    let half = (u64::BITS - (length - 1).leading_zeros()).div_ceil(2).max(1);
-    let mask = (1 << half) - 1;
-    let mut at = index;
-    loop {
-        for round in 0..4 {
-            let (left, right) = (at >> half, at & mask);
-            at = (right << half) | (left ^ (mix(key ^ mix(right ^ (round << 56))) & mask));
-        }
-        if at < length {
-            return at;
-        }
+        let Some(point) = self.sobol.as_mut().filter(|p| p.dimension < sobol_burley::NUM_DIMENSIONS) else {
+            return u;
+        };
+        let upper = f64::from(sobol_burley::sample(point.index, point.dimension, point.scramble));
+        point.dimension += 1;
+        (upper + u / f64::from(1 << 24)).min(1.0 - f64::EPSILON / 2.0)
     }
 }
 
@@ -170,25 +165,12 @@ fn mix(x: u64) -> u64 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn shuffling_is_a_permutation() {
-        for length in [1, 2, 3, 7, 50, 64, 1000, 1025] {
-            for key in [0, 1, u64::MAX] {
-                let mut seen = vec![false; length as usize];
-                for i in 0..length {
-                    seen[shuffled(i, length, key) as usize] = true;
-                }
-                assert!(seen.into_iter().all(|s| s), "{length}");
-            }
-        }
-    }
-
     /// The documented stream: whoever breaks this changes every user's numbers. The first is ChaCha8's published test
     /// vector for the key 0, 3e 00 ef 2f 89 5f 40 d6.
     #[test]
     fn streams_are_stable() {
         let first = |seed, instance| {
-            let mut numbers = Numbers::new(seed, instance);
+            let mut numbers = Numbers::new(Draws::Random, seed, instance);
             [numbers.next(), numbers.next(), numbers.next()]
         };
         assert_eq!(first(0, 0)[0], (0xd640_5f89_2fef_003e_u64 >> 11) as f64 / (1u64 << 53) as f64);
@@ -196,26 +178,28 @@ mod tests {
         assert_eq!(first(7, 3), [0.662_921_773_426_872_6, 0.504_500_465_857_356_2, 0.736_051_825_523_653_7]);
     }
 
-    /// Every stratum of every dimension holds one instance, and dimensions are shuffled apart.
+    /// Every 256th of every number's range holds one of 256 instances, and so does every cell of 16 x 16.
     #[test]
-    fn strata_hold_one_instance_each() {
-        let n = 97;
-        let mut columns = vec![vec![]; 16];
-        for instance in 0..n {
-            let mut numbers = Numbers::of(Draws::Stratified, 5, instance, n);
-            for column in &mut columns {
-                column.push(numbers.next());
+    fn sobol_points_fill_cells_evenly() {
+        for first in [0, 1 << SEQUENCE] {
+            let mut rows = vec![];
+            for instance in first..first + 256 {
+                let mut numbers = Numbers::new(Draws::Sobol, 5, instance);
+                rows.push([(); 300].map(|()| numbers.next()));
             }
-        }
-        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-        for (a, column) in columns.iter().enumerate() {
-            let mut strata: Vec<_> = column.iter().map(|u| (u * n as f64) as u64).collect();
-            strata.sort();
-            assert!(strata.into_iter().eq(0..n));
-            for other in &columns[..a] {
-                let product: Vec<_> = column.iter().zip(other).map(|(x, y)| (x - 0.5) * (y - 0.5)).collect();
-                assert!(12.0 * mean(&product).abs() < 5.0 / (n as f64).sqrt());
+            for d in 0..256 {
+                let mut cells: Vec<_> = rows.iter().map(|r| (r[d] * 256.0) as u64).collect();
+                cells.sort();
+                assert!(cells.into_iter().eq(0..256), "dimension {d}");
             }
+            let mut pairs: Vec<_> =
+                rows.iter().map(|r| (r[0] * 16.0) as u64 * 16 + (r[1] * 16.0) as u64).collect();
+            pairs.sort();
+            assert!(pairs.into_iter().eq(0..256));
+            // The rest is random.
+            let mean = rows.iter().map(|r| r[290]).sum::<f64>() / 256.0;
+            assert!((mean - 0.5).abs() < 0.1);
         }
+        assert_ne!(Numbers::new(Draws::Sobol, 5, 0).next(), Numbers::new(Draws::Sobol, 6, 0).next());
     }
 }

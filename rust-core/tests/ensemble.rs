@@ -93,3 +93,114 @@ fn converged_maxima() {
         check(format!("theta_i {incidence}"), peak(&base(8.0, 200_000), incidence, &all), expected);
     }
 }
+
+/// Everything about a run as bits.
+fn bits(ensemble: &Ensemble, engagements: &[Engagement]) -> Vec<u64> {
+    let samples = ensemble.sample(engagements, &|_| ()).unwrap();
+    assert_eq!(samples.engagements(), engagements.len());
+    let mut bits = vec![];
+    for (e, engagement) in engagements.iter().enumerate() {
+        for o in 0..engagement.observers().len() {
+            let s = samples.statistics(e, o, &[0.01, 0.1]);
+            bits.extend(
+                [s.mean, s.std, s.min, s.max, s.mean_f_cos, s.obscured, s.whitecap].map(f64::to_bits),
+            );
+            bits.extend(s.quantiles.iter().chain(&s.over).map(|x| x.to_bits()));
+            bits.extend(samples.of(e, o).flat_map(|(i, hit, seen)| {
+                let [x, y, z] = hit.position;
+                [i, x.to_bits(), y.to_bits(), z.to_bits(), seen.f.to_bits(), seen.cos_r.to_bits()]
+            }));
+        }
+    }
+    bits
+}
+
+/// The same bits for 1, 2 and 7 threads; engagements do not disturb each other; another seed is another sea.
+#[test]
+fn determined_by_the_seed_alone() {
+    let engagements: Vec<_> =
+        [10.0, 80.0, 30.0].iter().map(|i| in_plane(*i, &[0.0, 30.0, 60.0, 85.0])).collect();
+    for draws in [prob_water::Draws::Random, prob_water::Draws::Sobol] {
+        let mut ensemble = Ensemble::new(&base(40.0, 333));
+        ensemble.draws = draws;
+        let all = [1, 2, 7].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| bits(&ensemble, &engagements))
+        });
+        assert!(all[0] == all[1] && all[0] == all[2]);
+        let third = bits(&ensemble, &engagements[2..]);
+        assert!(all[0].ends_with(&third));
+        ensemble.water.parameters.seed = 1;
+        assert!(all[0] != bits(&ensemble, &engagements));
+    }
+}
+
+/// Sobol draws and expected whitecaps keep the means, and lose spread; how much depends on the sea.
+#[test]
+fn the_options_agree_on_the_mean() {
+    for w in [8.0, 56.0] {
+        compare_options(w);
+    }
+}
+
+fn compare_options(w: f64) {
+    let engagement = in_plane(30.0, &[10.0, 30.0, 50.0]);
+    let runs = |even: bool, presence| {
+        let mut means = vec![[0.0; 3]; 40];
+        for (seed, mean) in means.iter_mut().enumerate() {
+            let mut water = base(w, 1024);
+            water.parameters.seed = seed as u64;
+            let ensemble = Ensemble { presence, ..Ensemble::new(&water) };
+            let ensemble = if even { ensemble.around(&engagement) } else { ensemble };
+            let found = statistics(&ensemble, &engagement);
+            *mean = [found[0].mean, found[1].mean, found[2].mean];
+        }
+        let n = means.len() as f64;
+        let mean = |o: usize| means.iter().map(|m| m[o]).sum::<f64>() / n;
+        let variance = |o: usize| means.iter().map(|m| (m[o] - mean(o)).powi(2)).sum::<f64>() / (n - 1.0);
+        [0, 1, 2].map(|o| (mean(o), variance(o)))
+    };
+    let plain = runs(false, Presence::Drawn);
+    let calm = runs(true, Presence::Expected);
+    for (plain, calm) in plain.iter().zip(calm) {
+        let error = ((plain.1 + calm.1) / 40.0).sqrt();
+        println!(
+            "w* {w}: mean {:.5} and {:.5}, variance {:.1} times less",
+            plain.0,
+            calm.0,
+            plain.1 / calm.1
+        );
+        assert!((plain.0 - calm.0).abs() < 4.0 * error);
+        assert!(calm.1 < plain.1);
+    }
+}
+
+/// A crest over the laser or the observer, and a view from below the wave's horizon, are obscured; without wind nothing
+/// is.
+#[test]
+fn what_waves_cover_is_obscured() {
+    let low = Engagement::new(
+        0.0,
+        [0.0, 0.0, 0.05],
+        prob_water::Aim::Direction([0.1, 0.0, -1.0]),
+        &[[5.0, 0.0, 0.05], [0.0, 0.0, 500.0]],
+    )
+    .unwrap();
+    let found = statistics(&Ensemble::new(&base(24.0, 2000)), &low);
+    // Half of the water stands above the mean surface: there both are covered.
+    assert!(found[0].obscured > 0.5 && found[1].obscured > 0.35 && found[1].obscured < 0.5, "{found:?}");
+    let calm = statistics(&Ensemble::new(&base(0.0, 10)), &low);
+    assert!(calm.iter().all(|s| s.obscured == 0.0 && s.std == 0.0));
+}
+
+#[test]
+fn memory_is_asked_for_before_it_is_taken() {
+    let engagement = in_plane(30.0, &[0.0; 20]);
+    let error = Ensemble::new(&base(8.0, 1_000_000_000)).check(&engagement).unwrap_err().to_string();
+    assert!(
+        error.contains("instances") && error.contains("20 observers") && error.contains("GiB"),
+        "{error}"
+    );
+    assert!(Ensemble::new(&base(8.0, 1_000_000)).check(&engagement).is_ok());
+    assert!(Ensemble::new(&base(8.0, 5)).sample(&[], &|_| ()).is_err());
+}

@@ -83,6 +83,7 @@ int main(void) {
     refuses("beaufort", "13");
     refuses("ior", "0.9");
     refuses("surface", "lumpy");
+    refuses("depth", "shallow");
     refuses("whitecaps", "maybe");
     refuses("waves", "3");
 
