@@ -2,26 +2,59 @@
 //! model itself is the library `prob_water`.
 
 mod brdf;
-mod output;
+mod files;
+mod input;
 mod parameters;
 mod progress;
+mod scenario;
+mod spectrum;
+mod surface;
+mod table;
+mod toml_file;
 mod wind;
 
 use clap::{ArgMatches, Command};
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
-/// What every subcommand returns; the message becomes one line on standard error.
-type Outcome = Result<(), String>;
+/// Why a subcommand ended early.
+enum Stop {
+    /// The message becomes one line on standard error.
+    Refused(String),
+    /// Whoever reads standard output has read enough.
+    ReaderLeft,
+}
+
+impl From<String> for Stop {
+    fn from(message: String) -> Self {
+        Stop::Refused(message)
+    }
+}
+
+impl From<prob_water::Error> for Stop {
+    fn from(error: prob_water::Error) -> Self {
+        Stop::Refused(error.to_string())
+    }
+}
+
+/// What every subcommand returns.
+type Outcome = Result<(), Stop>;
 
 /// A subcommand: its flags, and what it does with them.
 type Subcommand = (fn() -> Command, fn(&ArgMatches) -> Outcome);
 
-const SUBCOMMANDS: [Subcommand; 2] = [(wind::command, wind::run), (brdf::command, brdf::run)];
+const SUBCOMMANDS: [Subcommand; 5] = [
+    (wind::command, wind::run),
+    (spectrum::command, spectrum::run),
+    (surface::command, surface::run),
+    (brdf::command, brdf::run),
+    (scenario::command, scenario::run),
+];
 
 fn main() -> ExitCode {
     match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
+        Ok(()) | Err(Stop::ReaderLeft) => ExitCode::SUCCESS,
+        Err(Stop::Refused(message)) => {
             eprintln!("prob-water: {}", one_line(&message));
             ExitCode::from(2)
         }
@@ -37,9 +70,14 @@ fn run() -> Outcome {
         .subcommands(SUBCOMMANDS.map(|(command, _)| command()));
     let matches = match command.try_get_matches() {
         Ok(matches) => matches,
-        Err(error) if error.use_stderr() => return Err(condense(&error)),
-        // --help and --version; whoever closed the pipe has read enough.
-        Err(error) => return error.print().or_else(output::ignore_broken_pipe),
+        Err(error) if error.use_stderr() => return Err(condense(&error).into()),
+        // --help and --version.
+        Err(error) => {
+            return error.print().map_err(|e| match e.kind() {
+                ErrorKind::BrokenPipe => Stop::ReaderLeft,
+                _ => Stop::Refused(format!("cannot write to standard output: {e}")),
+            });
+        }
     };
     let (name, matches) = matches.subcommand().expect("a subcommand is required");
     let (_, run) =

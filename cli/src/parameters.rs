@@ -1,20 +1,18 @@
 //! The vocabulary of parameters as flags.
 
 use clap::{Arg, ArgMatches};
-use prob_water::Water;
-use prob_water::vocabulary::{Builder, ENTRIES, Entry, Value};
+use prob_water::vocabulary::{Builder, ENTRIES, Value};
+use prob_water::{Parameters, Water};
 
-/// One flag per parameter: its name with dashes, its unit and its default.
-pub fn flags() -> impl Iterator<Item = Arg> {
-    ENTRIES.iter().map(|entry| {
-        let default = match entry.default {
-            "" => String::new(),
-            default => format!(" [default: {default}]"),
-        };
+/// One flag per parameter: its name with dashes, its unit and its default on a surface.
+pub fn flags(surface: &str) -> impl Iterator<Item = Arg> {
+    let defaults = on(surface).parameters().expect("defaults");
+    ENTRIES.iter().map(move |entry| {
+        let default = defaults.get(entry.name).map(|value| format!(" [default: {value}]"));
         Arg::new(entry.name)
             .long(entry.name.replace('_', "-"))
             .value_name(if entry.unit.is_empty() { "value" } else { entry.unit })
-            .help(format!("{}{default}", entry.help))
+            .help(format!("{}{}", entry.help, default.unwrap_or_default()))
             .help_heading("Parameters")
             .allow_hyphen_values(true)
     })
@@ -25,12 +23,43 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     ENTRIES.iter().map(|entry| entry.name)
 }
 
+/// The parameters given as flags.
+pub fn given(matches: &ArgMatches) -> Vec<(&'static str, Value)> {
+    names().filter_map(|name| Some((name, Value::Text(matches.get_one::<String>(name)?.clone())))).collect()
+}
+
 /// The sea that the flags describe.
 pub fn water(matches: &ArgMatches) -> Result<Water, String> {
+    build(Builder::default(), matches).map_err(|e| e.to_string())
+}
+
+/// The same, on the one surface that a subcommand knows.
+pub fn water_on(surface: &str, matches: &ArgMatches) -> Result<Water, String> {
+    let water = build(on(surface), matches).map_err(|e| e.to_string())?;
+    require(surface, &water.parameters)?;
+    Ok(water)
+}
+
+/// A builder whose surface is this one, unless another is asked for.
+pub fn on(surface: &str) -> Builder {
     let mut builder = Builder::default();
-    let given = |entry: &Entry| Some((entry.name, matches.get_one::<String>(entry.name)?.clone()));
-    for (name, text) in ENTRIES.iter().filter_map(given) {
-        builder.set(name, &Value::Text(text)).map_err(|e| e.to_string())?;
+    builder.set("surface", &Value::Text(surface.into())).expect("a known surface");
+    builder
+}
+
+/// Refuses every surface but one.
+pub fn require(surface: &str, parameters: &Parameters) -> Result<(), String> {
+    match parameters.get("surface") {
+        Some(Value::Text(found)) if found != surface => {
+            Err(format!("surface = {found} is unknown here: allowed is {surface}"))
+        }
+        _ => Ok(()),
     }
-    builder.parameters().and_then(|p| p.configure()).map_err(|e| e.to_string())
+}
+
+fn build(mut builder: Builder, matches: &ArgMatches) -> Result<Water, prob_water::Error> {
+    for (name, value) in given(matches) {
+        builder.set(name, &value)?;
+    }
+    builder.parameters()?.configure()
 }

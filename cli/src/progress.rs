@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
+use std::sync::Once;
 use std::time::{Duration, Instant};
 
 /// How far a run has come; silent for a second, and wherever standard error is not a terminal.
@@ -9,6 +10,7 @@ pub struct Progress {
     bar: ProgressBar,
     start: Instant,
     wanted: bool,
+    shown: Once,
 }
 
 impl Progress {
@@ -16,15 +18,31 @@ impl Progress {
     pub fn new(steps: u64, to_file: bool) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden())
             .with_style(ProgressStyle::with_template("{wide_bar} {percent:>3} %").expect("a valid template"));
-        Self { bar, start: Instant::now(), wanted: to_file || !io::stdout().is_terminal() }
+        let wanted = to_file || !io::stdout().is_terminal();
+        Self { bar, start: Instant::now(), wanted, shown: Once::new() }
     }
 
     /// So many steps are done.
     pub fn at(&self, step: u64) {
-        if self.wanted && self.bar.is_hidden() && self.start.elapsed() > Duration::from_secs(1) {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
+        self.show();
         self.bar.set_position(step);
+    }
+
+    /// So many more steps are done; any thread may say so.
+    pub fn add(&self, steps: u64) {
+        self.show();
+        self.bar.inc(steps);
+    }
+
+    /// Takes the bar off the terminal for as long as something else is written there.
+    pub fn aside<R>(&self, write: impl FnOnce() -> R) -> R {
+        self.bar.suspend(write)
+    }
+
+    fn show(&self) {
+        if self.wanted && self.start.elapsed() > Duration::from_secs(1) {
+            self.shown.call_once(|| self.bar.set_draw_target(ProgressDrawTarget::stderr()));
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! `prob-water wind`: the wind at every height the model needs, and the report's Table 1.
 
-use crate::output::{self, Cell};
+use crate::table::{self, Cell, Table};
 use crate::{Outcome, parameters};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use prob_water::wind::{TABLE_1, friction_velocity};
@@ -16,13 +16,13 @@ pub fn command() -> Command {
                 .conflicts_with_all(parameters::names())
                 .help("write the report's Table 1 instead: solved and printed friction velocities"),
         )
-        .args(output::flags())
-        .args(parameters::flags())
+        .args(table::flags())
+        .args(parameters::flags("flat"))
 }
 
 /// One row for the given parameters, or all of Table 1.
 pub fn run(matches: &ArgMatches) -> Outcome {
-    if matches.get_flag("table") { table(matches) } else { row(matches) }
+    if matches.get_flag("table") { table_1(matches) } else { row(matches) }
 }
 
 const ROW: [&str; 11] = [
@@ -43,42 +43,41 @@ fn row(matches: &ArgMatches) -> Outcome {
     let water = parameters::water(matches)?;
     let wind = &water.wind;
     let beaufort = wind.beaufort();
-    output::write(matches, &ROW, |out| {
-        out.row(&[
-            Cell::Number(wind.friction_velocity),
-            Cell::Number(wind.roughness_height()),
-            Cell::Number(wind.w10),
-            Cell::Number(wind.w12_5),
-            Cell::Number(wind.w19_5),
-            Cell::Count(beaufort),
-            Cell::Text(TABLE_1[beaufort].description),
-            Cell::Number(water.whitecap_fraction),
-            Cell::Number(water.variances[0]),
-            Cell::Number(water.variances[1]),
-            Cell::Number(water.ior),
-        ])
-    })
+    let mut out = Table::new(matches, ROW)?;
+    out.row(&[
+        Cell::Number(wind.friction_velocity),
+        Cell::Number(wind.roughness_height()),
+        Cell::Number(wind.w10),
+        Cell::Number(wind.w12_5),
+        Cell::Number(wind.w19_5),
+        Cell::Count(beaufort as u64),
+        Cell::Text(TABLE_1[beaufort].description),
+        Cell::Number(water.whitecap_fraction),
+        Cell::Number(water.variances[0]),
+        Cell::Number(water.variances[1]),
+        Cell::Number(water.ior),
+    ])?;
+    table::end([out])
 }
 
 const TABLE: [&str; 6] =
     ["beaufort", "description", "kind", "W10_m_s", "friction_velocity_cm_s", "printed_cm_s"];
 const KINDS: [&str; 3] = ["low", "high", "nominal"];
 
-fn table(matches: &ArgMatches) -> Outcome {
-    output::write(matches, &TABLE, |out| {
-        for (beaufort, row) in TABLE_1.iter().enumerate() {
-            for ((kind, speed), printed) in KINDS.into_iter().zip(row.wind_speed).zip(row.friction_velocity) {
-                let solved = friction_velocity(speed, 10.0).expect("Table 1 is within its own range");
-                out.row(&[
-                    Cell::Count(beaufort),
-                    Cell::Text(row.description),
-                    Cell::Text(kind),
-                    Cell::Number(speed),
-                    Cell::Number(solved),
-                    Cell::Given(&format!("{printed:.2}"), printed),
-                ])?;
-            }
+fn table_1(matches: &ArgMatches) -> Outcome {
+    let mut out = Table::new(matches, TABLE)?;
+    for (beaufort, row) in TABLE_1.iter().enumerate() {
+        for ((kind, speed), printed) in KINDS.into_iter().zip(row.wind_speed).zip(row.friction_velocity) {
+            let solved = friction_velocity(speed, 10.0).expect("Table 1 is within its own range");
+            out.row(&[
+                Cell::Count(beaufort as u64),
+                Cell::Text(row.description),
+                Cell::Text(kind),
+                Cell::Number(speed),
+                Cell::Number(solved),
+                Cell::Given(&format!("{printed:.2}"), printed),
+            ])?;
         }
-        Ok(())
-    })
+    }
+    table::end([out])
 }

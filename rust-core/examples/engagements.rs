@@ -73,12 +73,12 @@ fn stages(repeats: usize) {
         let mut surface = RealisedSurface::default();
         let draw = best(repeats, || {
             for i in 0..RUNS {
-                surface.draw(waves.components(&mut Numbers::new(Draws::Random, 0, i)));
+                surface.draw(waves.components(Numbers::new(Draws::Random, 0, i)));
                 surface.set_time(black_box(1.0));
             }
         });
         let surfaces: Vec<_> =
-            (0..RUNS).map(|i| waves.surface(&mut Numbers::new(Draws::Random, 0, i), 0.0)).collect();
+            (0..RUNS).map(|i| waves.surface(Numbers::new(Draws::Random, 0, i), 0.0)).collect();
         let mut path = Path::default();
         let (laser, beam) = (engagement.laser().into(), engagement.direction().into());
         let mut hits = vec![];
@@ -107,7 +107,11 @@ fn stages(repeats: usize) {
         let us = |time: f64| time * 1e6 / RUNS as f64;
         println!(
             r#"{{"stages": {{"w": {w}, "incidence": {incidence}}}, "draw": {:.3}, "cast": {:.3}, "normal": {:.3}, "obscuration": {:.3}, "brdf": {:.3}}}"#,
-            us(draw), us(cast), us(point), us(hide), us(eval)
+            us(draw),
+            us(cast),
+            us(point),
+            us(hide),
+            us(eval)
         );
     }
 }

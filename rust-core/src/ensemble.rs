@@ -3,8 +3,8 @@
 use crate::cast::Path;
 use crate::scenario::Engagement;
 use crate::surface::{Surface, normal};
-use crate::waves::{Draws, Numbers, Waves};
-use crate::{Error, Water, whitecap};
+use crate::waves::{Component, Draws, Numbers, Waves};
+use crate::{Error, Water};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -106,6 +106,14 @@ impl Ensemble {
         Self { draws: Draws::Sobol, phases_at: ([x, y], engagement.time()), ..self }
     }
 
+    /// The components of an instance, and the number of [0, 1) that decides about its whitecap.
+    pub fn components(&self, instance: u64) -> (f64, impl Iterator<Item = Component>) {
+        let mut numbers = Numbers::new(self.draws, self.water.parameters.seed, instance);
+        let chance = numbers.next();
+        let (place, time) = self.phases_at;
+        (chance, self.waves.components(numbers).map(move |c| c.with_phase_at(place, time)))
+    }
+
     /// Refuses an engagement whose samples would take more than [`MEMORY`].
     pub fn check(&self, engagement: &Engagement) -> Result<(), Error> {
         let instances = self.water.parameters.instances;
@@ -174,11 +182,8 @@ impl Ensemble {
         hits: &mut [Hit],
         mut observations: &mut [Observation],
     ) {
-        let p = &self.water.parameters;
-        let mut numbers = Numbers::new(self.draws, p.seed, instance);
-        let chance = numbers.next();
-        let (place, time) = self.phases_at;
-        worker.surface.draw(self.waves.components(&mut numbers).map(|c| c.with_phase_at(place, time)));
+        let (chance, components) = self.components(instance);
+        worker.surface.draw(components);
         for (engagement, hit) in group.iter().zip(hits) {
             let (now, later) = observations.split_at_mut(engagement.observers().len());
             observations = later;
@@ -201,11 +206,7 @@ impl Ensemble {
         let (laser, beam) = (engagement.laser().into(), engagement.direction().into());
         let place = worker.path.first_hit(&worker.surface, laser, beam)?.truncate().to_array();
         let point = worker.surface.point(place);
-        let probability = if self.water.parameters.whitecaps {
-            whitecap::probability(self.water.wind.friction_velocity, 100.0 * point.acceleration)
-        } else {
-            0.0
-        };
+        let probability = self.water.whitecap_probability(point.acceleration);
         Some(Hit {
             position: [place[0], place[1], point.height],
             normal: point.normal(),

@@ -82,3 +82,16 @@ pub enum Error {
         expected: usize,
     },
 }
+
+impl Error {
+    /// The parameters that are to blame, the last given first.
+    pub fn parameters(&self) -> Vec<&'static str> {
+        match self {
+            Self::OutOfRange { parameter, .. }
+            | Self::UnknownChoice { parameter, .. }
+            | Self::WrongType { parameter, .. } => vec![parameter],
+            Self::Conflict { first, second, .. } => vec![second, first],
+            Self::UnknownParameter { .. } | Self::Row { .. } | Self::Length { .. } => vec![],
+        }
+    }
+}

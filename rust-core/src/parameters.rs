@@ -135,6 +135,15 @@ fn require(parameter: &'static str, value: impl ToString, holds: bool, allowed: 
 }
 
 impl Water {
+    /// Probability of a whitecap (Eqs. 53-54) where a drawn surface has a vertical acceleration in m/s^2; 0 where
+    /// whitecaps are switched off.
+    pub fn whitecap_probability(&self, acceleration: f64) -> f64 {
+        if !self.parameters.whitecaps {
+            return 0.0;
+        }
+        whitecap::probability(self.wind.friction_velocity, 100.0 * acceleration)
+    }
+
     /// What the waves longer than two footprints are drawn from.
     pub fn waves(&self) -> Waves {
         let p = &self.parameters;

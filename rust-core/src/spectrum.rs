@@ -68,7 +68,7 @@ impl Spectrum {
         let scale_2 = 0.4375 * (2.0 * PI / GRAVITY.sqrt()).powf(p - 1.0) * shoulder.powf(0.5 * (4.0 - p));
         let scale_1 =
             (ALPHA / 0.875).powi(2) * (GRAVITY / (4.0 * PI * PI)).powf(p - 1.0) * shoulder.powf(p - 4.0);
-        let fetch = (fetch <= LONGEST_FETCH)
+        let fetch = (fetch <= LONGEST_FETCH && wind.w10 > 0.0)
             .then(|| Fetch { peak: 22.0 * (GRAVITY * GRAVITY / (100.0 * fetch * 100.0 * wind.w10)).cbrt() });
         Self {
             tension,
@@ -239,6 +239,11 @@ mod tests {
         assert_eq!(spectrum(0.0).k_max(0.15), None);
         assert_eq!(spectrum(0.471).k_max(0.15), None);
         assert!(spectrum(0.473).k_max(0.15).is_some());
+        let calm = Wind::FrictionVelocity(0.0).profile().unwrap();
+        for fetch in [100.0, f64::INFINITY] {
+            let s = Spectrum::new(&calm, Body::Ocean, f64::INFINITY, fetch);
+            assert!([1e-3, 0.1, s.k2, 10.0].iter().all(|k| s.density(*k) == 0.0));
+        }
         for w in [0.473, 2.0, 8.0, 56.0, 238.65] {
             for footprint in [1e-3, 0.15, 100.0, f64::INFINITY] {
                 let s = spectrum(w);

@@ -57,6 +57,9 @@ pub const ENTRIES: [Entry; 22] = [
     entry("gram_charlier", "", "true", "apply skewness and kurtosis (Eq. 78)"),
 ];
 
+/// The parameters that tell the wind: one of them is enough, but for the height of a speed.
+pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
+
 /// A value as scene files, flags and C hand it over.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {

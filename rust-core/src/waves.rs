@@ -97,14 +97,14 @@ impl Waves {
         self.component(k, TAU * u[1], self.wind_azimuth + PI * (u[2] - 0.5))
     }
 
-    /// The components of an instance.
-    pub fn components(&self, numbers: &mut Numbers) -> impl Iterator<Item = Component> {
+    /// The components that these numbers draw.
+    pub fn components(&self, mut numbers: Numbers) -> impl Iterator<Item = Component> {
         let range = self.log_range.unwrap_or_default();
         (0..self.len()).map(move |_| self.draw(range, std::array::from_fn(|_| numbers.next())))
     }
 
-    /// The surface of an instance at a time in s.
-    pub fn surface(&self, numbers: &mut Numbers, time: f64) -> Surface {
+    /// Their surface at a time in s.
+    pub fn surface(&self, numbers: Numbers, time: f64) -> Surface {
         Surface::new(self.components(numbers), time)
     }
 }

@@ -38,7 +38,7 @@ fn case(seed: u64) -> Case {
         p.wind_direction = rng.random_range(-180.0..180.0);
     });
     let waves = sea.waves();
-    let surface = waves.surface(&mut Numbers::new(Draws::Random, seed, 0), rng.random_range(-1e3..1e3));
+    let surface = waves.surface(Numbers::new(Draws::Random, seed, 0), rng.random_range(-1e3..1e3));
     let direction = |rng: &mut StdRng, from_vertical: f64| {
         let (sin, cos) = from_vertical.to_radians().sin_cos();
         let (sp, cp) = rng.random_range(0.0..std::f64::consts::TAU).sin_cos();

@@ -58,7 +58,7 @@ fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec
         for instance in b * BATCH..(b + 1) * BATCH {
             let mut numbers = Numbers::new(Draws::Random, 1, instance);
             let chance = numbers.next();
-            let point = waves.surface(&mut numbers, 0.0).point([0.0; 2]);
+            let point = waves.surface(numbers, 0.0).point([0.0; 2]);
             let n = point.normal();
             let area = (dot(n, source) / n[2]).max(0.0);
             let foam = chance < whitecap::probability(w, 100.0 * point.acceleration);

@@ -5,6 +5,10 @@ mod files;
 #[cfg(unix)]
 mod guide;
 mod refusals;
+mod scenario;
+mod scenario_refusals;
+mod spectrum;
+mod surface;
 mod wind;
 
 use std::fs;
@@ -62,8 +66,27 @@ fn vectors(name: &str) -> String {
     fs::read_to_string(path).unwrap()
 }
 
+/// One column of CSV text.
+#[track_caller]
+fn column<'t>(text: &'t str, name: &str) -> Vec<&'t str> {
+    let rows = table(text);
+    let at = rows[0].iter().position(|column| *column == name).expect(name);
+    rows[1..].iter().map(|row| row[at]).collect()
+}
+
+#[track_caller]
+fn floats(text: &str, name: &str) -> Vec<f64> {
+    column(text, name).into_iter().map(float).collect()
+}
+
+#[track_caller]
 fn float(text: &str) -> f64 {
-    text.parse().unwrap()
+    text.parse().expect(text)
+}
+
+/// The same number, but for the last bit, which this reader of JSON may miss.
+fn same(read: f64, expected: f64) -> bool {
+    (read - expected).abs() <= f64::EPSILON * expected.abs()
 }
 
 #[track_caller]

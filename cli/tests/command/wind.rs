@@ -75,9 +75,16 @@ fn table_1_as_printed() {
 
 #[test]
 fn help_shows_units_and_defaults() {
-    for subcommand in ["wind", "brdf"] {
+    for (subcommand, surface, footprint) in [
+        ("wind", "flat", "inf"),
+        ("brdf", "flat", "inf"),
+        ("spectrum", "instance", "0.15"),
+        ("surface", "instance", "0.15"),
+        ("scenario", "instance", "0.15"),
+    ] {
         let help = succeed(&format!("{subcommand} --help"), "");
-        for text in ["--friction-velocity <cm/s>", "--footprint <m>", "[default: inf]", "[default: 5]"] {
+        let [surface, footprint] = [surface, footprint].map(|default| format!("[default: {default}]"));
+        for text in ["--friction-velocity <cm/s>", "--footprint <m>", "[default: 5]", &surface, &footprint] {
             assert!(help.contains(text), "{text}");
         }
         for entry in prob_water::vocabulary::ENTRIES {

@@ -1,0 +1,117 @@
+//! Where rows go: standard output, or files that appear whole or not at all.
+
+use crate::{Outcome, Stop};
+use std::fs::{self, File, Permissions};
+use std::io::{self, ErrorKind, Stdout, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use tempfile::NamedTempFile;
+
+/// A file in the making, or standard output.
+pub struct Destination {
+    /// As given, for messages; `None` is standard output.
+    given: Option<PathBuf>,
+    out: Out,
+}
+
+enum Out {
+    Standard(Stdout),
+    /// A device or a pipe, written as it is.
+    Device(File),
+    Temporary {
+        file: NamedTempFile,
+        path: PathBuf,
+        permissions: Option<Permissions>,
+    },
+}
+
+/// The files in the making, which Ctrl-C removes.
+static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+impl Destination {
+    /// Standard output where no path is given.
+    pub fn open(path: Option<&Path>) -> Result<Self, Stop> {
+        let Some(path) = path else {
+            return Ok(Self { given: None, out: Out::Standard(io::stdout()) });
+        };
+        let out = open(path).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+        Ok(Self { given: Some(path.to_owned()), out })
+    }
+
+    /// What to make of an error in writing: whoever reads standard output may stop early.
+    pub fn stop(&self, error: io::Error) -> Stop {
+        match &self.given {
+            None if error.kind() == ErrorKind::BrokenPipe => Stop::ReaderLeft,
+            None => Stop::Refused(format!("cannot write to standard output: {error}")),
+            Some(path) => Stop::Refused(format!("cannot write {}: {error}", path.display())),
+        }
+    }
+}
+
+impl Write for Destination {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.out {
+            Out::Standard(out) => out.write(bytes),
+            Out::Device(out) => out.write(bytes),
+            Out::Temporary { file, .. } => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.out {
+            Out::Standard(out) => out.flush(),
+            Out::Device(out) => out.flush(),
+            Out::Temporary { file, .. } => file.flush(),
+        }
+    }
+}
+
+/// Lets the files appear, now that all of them are whole.
+pub fn keep(destinations: Vec<Destination>) -> Outcome {
+    // Ctrl-C has to wait: it comes before the first or after the last.
+    let _all = TEMPORARIES.lock().unwrap();
+    for destination in destinations {
+        let Destination { given: Some(given), out: Out::Temporary { file, path, permissions } } = destination
+        else {
+            continue;
+        };
+        permissions
+            .map_or(Ok(()), |permissions| file.as_file().set_permissions(permissions))
+            .and_then(|()| file.persist(path).map_err(|e| e.error))
+            .map_err(|e| format!("cannot write {}: {e}", given.display()))?;
+    }
+    Ok(())
+}
+
+/// Through a link to the file itself, as an ordinary write would.
+pub fn resolve(path: &Path) -> PathBuf {
+    fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
+}
+
+fn open(path: &Path) -> io::Result<Out> {
+    let path = resolve(path);
+    let old = fs::metadata(&path).ok();
+    if old.as_ref().is_some_and(|old| !old.is_file()) {
+        return Ok(Out::Device(File::options().write(true).open(path)?));
+    }
+    // The first call holds for all files.
+    let _ = ctrlc::set_handler(|| {
+        for path in TEMPORARIES.lock().unwrap().iter() {
+            let _ = fs::remove_file(path);
+        }
+        std::process::exit(130);
+    });
+    let mut all = TEMPORARIES.lock().unwrap();
+    let file = temporary_file(path.parent().unwrap_or(Path::new("/")))?;
+    all.push(file.path().to_owned());
+    Ok(Out::Temporary { file, path, permissions: old.map(|old| old.permissions()) })
+}
+
+/// In the folder of the final file, so that a rename suffices, with a new file's usual permissions.
+fn temporary_file(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".prob-water-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}

@@ -1,0 +1,87 @@
+//! A scenario file: the sea, what is asked about it, and the engagements.
+
+use super::engagement;
+use super::model::{Flag, Model};
+use super::settings::{self, Settings};
+use crate::toml_file::Document;
+use prob_water::exact::Exact;
+use prob_water::{Draws, Engagement, Ensemble, Water};
+use std::path::Path;
+
+/// What a file describes; checked.
+pub struct Scenario {
+    /// The sea.
+    pub water: Water,
+    /// Where its statistics come from.
+    pub method: Method,
+    /// Values of f, 1/sr, whose exceedance is asked for.
+    pub limits: Vec<f64>,
+    /// One for every time.
+    pub engagements: Vec<Engagement>,
+}
+
+/// Where statistics come from.
+pub enum Method {
+    /// Drawn surfaces.
+    Draws(Box<Ensemble>),
+    /// Integrals over all surfaces.
+    Exact(Box<Exact>),
+}
+
+impl Scenario {
+    /// Reads a file; flags stand above its `[model]`. Whatever is wrong is refused here.
+    pub fn read(path: &Path, flags: &[Flag]) -> Result<Self, String> {
+        let document = Document::read(path)?;
+        let root = document.parse()?;
+        let mut model = Model { document: &document, at: None, items: Vec::new() };
+        let mut own = Vec::new();
+        let mut entries = Vec::new();
+        for item in document.items(&root) {
+            match item.name {
+                "model" => {
+                    model.at = Some(item);
+                    let (more, vocabulary): (Vec<_>, _) =
+                        item.table()?.into_iter().partition(|item| settings::is(item.name));
+                    model.items = vocabulary;
+                    own.extend(more);
+                }
+                "engagement" => entries = item.list("a list of tables: write [[engagement]]")?,
+                name if settings::is(name) => own.push(item),
+                name => {
+                    let known = settings::KEYS.join(", ");
+                    return Err(
+                        item.refuse(format!("unknown key {name}: known are model, engagement, {known}"))
+                    );
+                }
+            }
+        }
+        if entries.is_empty() {
+            return Err(document.refuse(0, "[[engagement]] is missing"));
+        }
+        let settings = Settings::read(&own)?;
+        let water = model.water(flags)?;
+        let mut engagements = Vec::new();
+        // Of every engagement, where it stands.
+        let mut places = Vec::new();
+        for entry in &entries {
+            let of_entry = engagement::read(entry, water.parameters.time)?;
+            places.resize(places.len() + of_entry.len(), entry);
+            engagements.extend(of_entry);
+        }
+        let method = if settings.exact {
+            let exact = Exact::new(&water).map_err(|e| model.refuse(flags, &e, None))?;
+            Method::Exact(Box::new(exact))
+        } else {
+            let Settings { draws, presence, .. } = settings;
+            let mut ensemble = Ensemble { draws, presence, ..Ensemble::new(&water) };
+            if draws == Draws::Sobol {
+                ensemble = ensemble.around(&engagements[0]);
+            }
+            for (engagement, place) in engagements.iter().zip(places) {
+                ensemble.check(engagement).map_err(|e| model.refuse(flags, &e, Some(place)))?;
+            }
+            Method::Draws(Box::new(ensemble))
+        };
+        Ok(Self { water, method, limits: settings.limits, engagements })
+    }
+}

@@ -1,0 +1,77 @@
+//! The keys that are a scenario's own: what is asked about the sea.
+
+use crate::toml_file::Item;
+use prob_water::{Draws, Presence};
+
+/// Their names.
+pub const KEYS: [&str; 4] = ["limits", "statistics", "draws", "whitecap_presence"];
+
+/// Whether a key is one of them.
+pub fn is(name: &str) -> bool {
+    KEYS.contains(&name)
+}
+
+/// Their values.
+#[derive(Default)]
+pub struct Settings {
+    /// 1/sr.
+    pub limits: Vec<f64>,
+    /// No draws: `statistics = "exact"`.
+    pub exact: bool,
+    /// How random numbers are spread over the instances.
+    pub draws: Draws,
+    /// How whitecaps take part.
+    pub presence: Presence,
+}
+
+impl Settings {
+    /// Each at most once, wherever they stand.
+    pub fn read(items: &[Item]) -> Result<Self, String> {
+        let mut settings = Self::default();
+        for (i, item) in items.iter().enumerate() {
+            if items[..i].iter().any(|before| before.name == item.name) {
+                return Err(item.refuse(format!("{} is given twice", item.name)));
+            }
+            match item.name {
+                "limits" => settings.limits = limits(item)?,
+                "statistics" => settings.exact = item.choice(&[("draws", false), ("exact", true)])?,
+                "draws" => {
+                    settings.draws = item.choice(&[("random", Draws::Random), ("sobol", Draws::Sobol)])?;
+                }
+                _ => {
+                    settings.presence =
+                        item.choice(&[("drawn", Presence::Drawn), ("expected", Presence::Expected)])?;
+                }
+            }
+        }
+        let meaningless = |item: &&Item| match item.name {
+            "draws" => settings.draws != Draws::Random,
+            "whitecap_presence" => settings.presence != Presence::Drawn,
+            _ => false,
+        };
+        match items.iter().find(meaningless).filter(|_| settings.exact) {
+            Some(item) => {
+                let with = if item.name == "draws" { "sobol" } else { "expected" };
+                Err(item.refuse(format!("{} = {with} has no meaning with statistics = exact", item.name)))
+            }
+            None => Ok(settings),
+        }
+    }
+}
+
+fn limits(item: &Item) -> Result<Vec<f64>, String> {
+    let mut limits = Vec::new();
+    for part in item.list("a list of numbers")? {
+        let limit = part.number()?;
+        if !(limit.is_finite() && limit >= 0.0) {
+            return Err(
+                part.refuse(format!("limits: {limit} is out of range: allowed is finite, from 0 1/sr"))
+            );
+        }
+        if limits.contains(&limit) {
+            return Err(part.refuse(format!("limits: {limit} is there twice")));
+        }
+        limits.push(limit);
+    }
+    Ok(limits)
+}
