@@ -42,7 +42,7 @@ const PRODUCT_END: f64 = 5.0;
 const STEP: f64 = 0.66;
 const NODES: usize = 24;
 /// Whitecaps rarer than this are left out.
-const RARE: f64 = 1e-6;
+const RARE: f64 = 1e-5;
 
 /// The slope density of a drawn sea and what it reflects.
 #[derive(Debug, Clone)]
@@ -414,11 +414,15 @@ fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64])
     }
     let half_period = 1.05 * bound.min(7.0 * sigma);
     let step = PI / half_period;
-    let frequencies: Vec<f64> =
+    let mut frequencies: Vec<f64> =
         (0..).map(|n| f64::from(n) * step).take_while(|r| *r < 10.0 / sigma).collect();
+    let mut level = component.acceleration(&frequencies);
+    let used = level.iter().rposition(|c| c.abs().powf(count) > NEGLIGIBLE).unwrap_or(0) + 2;
+    frequencies.truncate(used);
+    level.truncate(used);
     let weights = falling(ends, &frequencies);
     let sum = |row: &[f64]| row.iter().zip(&weights).map(|(c, w)| w * c.powi(count as i32)).sum::<f64>();
-    if sum(&component.slope_and_acceleration(&[0.0], &[0.0], &frequencies)) < RARE {
+    if sum(&level) < RARE {
         return None;
     }
     let joint = component.slope_and_acceleration(upwind, crosswind, &frequencies);

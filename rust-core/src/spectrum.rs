@@ -129,7 +129,8 @@ impl Spectrum {
     /// Eq. 16.
     fn kitaigorodskii(&self, k: f64) -> f64 {
         let x = k * k / self.km2;
-        self.scale_2 * (1.0 + 3.0 * x) / (k * (1.0 + x)).powf(2.5)
+        let steep = k * (1.0 + x);
+        self.scale_2 * (1.0 + 3.0 * x) / (steep * steep * steep.sqrt())
     }
 }
 

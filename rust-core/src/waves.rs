@@ -44,6 +44,9 @@ pub struct Component {
 impl Component {
     /// The wave that has this one's phase at a place in m and a time in s (Eq. 31) instead of at the origin at 0.
     pub fn with_phase_at(self, [x, y]: [f64; 2], time: f64) -> Self {
+        if (x, y, time) == (0.0, 0.0, 0.0) {
+            return self;
+        }
         let (sin, cos) = self.azimuth.sin_cos();
         let since = self.frequency * time + self.wave_number * (x * cos + y * sin);
         Self { phase: (self.phase - since) % TAU, ..self }
