@@ -1,4 +1,4 @@
-"""The throughput table: prob_water, Mitsuba's own BSDFs, their peer `ocean_legacy`, and the scalar Rust core.
+"""Speed: prob_water, Mitsuba's own BSDFs, their peer `ocean_legacy`, and the Rust core, its engagements included.
 
 Run by `cargo xtask bench [--quick] [--rounds N] [--output FILE]`. The traced BSDFs are timed by
 bench_throughput.py in two processes, one per Python environment, that take turns; the table shows the best
@@ -15,6 +15,8 @@ import subprocess
 import sys
 from pathlib import Path
 from typing import Any
+
+import bench_engagements
 
 ROOT = Path(__file__).parents[1]
 PYTHONS = {"prob_water": sys.executable, "peer": str(ROOT / ".venv-peer/bin/python")}
@@ -91,11 +93,11 @@ def traced(rounds: int, passes: int, pairs: int) -> dict[str, Any]:
     return {"pairs": pairs, "skipped": skipped, "versions": versions, "million_per_s": figures}
 
 
-def scalar(repeats: int) -> list[dict[str, Any]]:
-    """The Rust core's own figures, from its example."""
-    print("bench: the Rust core", file=sys.stderr)
+def core(example: str, repeats: int) -> list[dict[str, Any]]:
+    """The Rust core's own figures, from one of its examples."""
+    print(f"bench: the Rust core, {example}", file=sys.stderr)
     command = [os.environ.get("CARGO", "cargo"), "run", "--release", "--quiet", "-p", "prob-water",
-               "--example", "throughput", "--", str(repeats)]
+               "--example", example, "--", str(repeats)]
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
     return [json.loads(line) for line in done.stdout.splitlines()]
 
@@ -156,6 +158,7 @@ def show(report: dict[str, Any]) -> None:
         cell = f"{1e6 / best:.0f} ({1e6 / median:.0f})" if row["name"] == "configure" \
             else f"{best / 1e6:.2f} ({median / 1e6:.2f})"
         print(f"{row['name'] + ', ' + row['precision']:36}{cell:>15}")
+    bench_engagements.show(report["engagements"])
 
 
 def main() -> None:
@@ -171,7 +174,7 @@ def main() -> None:
         rounds, passes, pairs, repeats = 1, 3, 100_000, 1
 
     report = {"commit": commit(), "machine": machine(), "traced": traced(rounds, passes, pairs),
-              "scalar": scalar(repeats)}
+              "scalar": core("throughput", repeats), "engagements": core("engagements", repeats)}
     report["ratios"] = ratios(report["traced"]["million_per_s"])
     show(report)
     arguments.output.parent.mkdir(parents=True, exist_ok=True)

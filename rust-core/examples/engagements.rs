@@ -166,7 +166,7 @@ fn race(repeats: usize, w: f64, incidence: f64) {
     let per_draw = draws / 20_000.0;
     let (percent, tenth) = (needed * 1e4 * per_draw, needed * 1e6 * per_draw);
     println!(
-        r#"{{"race": {{"w": {w}, "incidence": {incidence}}}, "exact": {exact:.6}, "draws_1_percent": {percent:.4}, "draws_0.1_percent": {tenth:.3}, "ratio_1": {:.0}, "ratio_0.1": {:.0}, "off_in_standard_errors": {:.2}}}"#,
+        r#"{{"race": {{"w": {w}, "incidence": {incidence}}}, "exact": {exact:.6}, "draws_1_percent": {percent:.4}, "draws_0.1_percent": {tenth:.3}, "ratio_1": {:.0}, "ratio_0.1": {:.0}, "draws": 20000, "off_in_standard_errors": {:.2}}}"#,
         percent / exact,
         tenth / exact,
         (off.iter().sum::<f64>() / 100.0).sqrt()

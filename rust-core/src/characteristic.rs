@@ -1,4 +1,4 @@
-//! The slope of a drawn surface at a point, without drawing: its density from its characteristic function.
+//! The characteristic function of the slope and the acceleration of one drawn wave at a point.
 //!
 //! The components are drawn independently and alike, so the characteristic function of their sum is that of one to the
 //! power M. One component with a uniform phase has the slope `a k sin(Psi) e_phi` and the vertical acceleration
@@ -13,7 +13,7 @@ use crate::quadrature::gauss_legendre;
 use crate::spectrum::spreading;
 use crate::waves::Waves;
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
 
 /// Nodes in ln k for every piece of the spectrum, and azimuths of a half turn.
@@ -197,13 +197,6 @@ fn quintic(x: f64) -> [f64; 6] {
     ]
 }
 
-/// Lagrange's weights of the values at -1, 0, 1 and 2.
-#[inline]
-fn cubic(x: f64) -> [f64; 4] {
-    let (a, b, c, d) = (x + 1.0, x, x - 1.0, x - 2.0);
-    [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0]
-}
-
 /// J0 of a number not below 0, to 1e-7: a table, beyond it the leading asymptotic terms.
 fn bessel(x: f64) -> f64 {
     static J0: LazyLock<Table> = LazyLock::new(|| Table::new(64.0, 0.125, libm::j0));
@@ -212,89 +205,6 @@ fn bessel(x: f64) -> f64 {
     }
     let phase = x - 0.25 * PI;
     (2.0 / (PI * x)).sqrt() * (phase.cos() + phase.sin() / (8.0 * x))
-}
-
-/// A function of the slope, even in both of its parts, as a table with bicubic interpolation.
-#[derive(Debug, Clone)]
-pub(crate) struct SlopeTable {
-    /// Of one step, upwind and crosswind.
-    pub steps: [f64; 2],
-    /// Values from 0, upwind and crosswind.
-    pub counts: [usize; 2],
-    /// Row by row, a line and a column before 0 included.
-    values: Vec<f64>,
-}
-
-impl SlopeTable {
-    /// The inverse transform of values at the products of frequencies upwind and crosswind (equal steps from 0), at
-    /// `counts` slopes at `steps` from 0.
-    pub fn transform(
-        spectrum: &[f64],
-        frequencies: [&[f64]; 2],
-        steps: [f64; 2],
-        counts: [usize; 2],
-    ) -> Self {
-        // Sums over positive and negative frequencies are sums of cosines; 0 counts once.
-        let cosines = |axis: usize| -> Vec<Vec<f64>> {
-            let q = frequencies[axis];
-            let weight = |i: usize| (q[1] - q[0]) / PI * if i == 0 { 0.5 } else { 1.0 };
-            let at = |s: f64| (0..q.len()).map(|i| weight(i) * (q[i] * s).cos()).collect();
-            (0..counts[axis] + 3).map(|n| at((n as f64 - 1.0) * steps[axis])).collect()
-        };
-        let (upwind, crosswind) = (cosines(0), cosines(1));
-        let width = frequencies[1].len();
-        let mut values = Vec::with_capacity((counts[0] + 3) * (counts[1] + 3));
-        let mut line = vec![0.0; width];
-        for row in &upwind {
-            line.fill(0.0);
-            for (weight, part) in row.iter().zip(spectrum.chunks(width)) {
-                line.iter_mut().zip(part).for_each(|(sum, x)| *sum += weight * x);
-            }
-            let value = |c: &Vec<f64>| c.iter().zip(&line).map(|(a, b)| a * b).sum::<f64>();
-            values.extend(crosswind.iter().map(value));
-        }
-        Self { steps, counts, values }
-    }
-
-    /// At a node.
-    pub fn node(&self, upwind: usize, crosswind: usize) -> f64 {
-        self.values[(upwind + 1) * (self.counts[1] + 3) + crosswind + 1]
-    }
-
-    /// At a slope upwind and crosswind; 0 beyond the table.
-    #[inline]
-    pub fn at(&self, slope: [f64; 2]) -> f64 {
-        let (u, c) = (slope[0].abs() / self.steps[0], slope[1].abs() / self.steps[1]);
-        let (i, j) = (u as usize, c as usize);
-        if i >= self.counts[0] || j >= self.counts[1] {
-            return 0.0;
-        }
-        let (along, across) = (cubic(u - i as f64), cubic(c - j as f64));
-        let width = self.counts[1] + 3;
-        let line = |n: usize| {
-            let v = &self.values[(i + n) * width + j..][..4];
-            across[0] * v[0] + across[1] * v[1] + across[2] * v[2] + across[3] * v[3]
-        };
-        along[0] * line(0) + along[1] * line(1) + along[2] * line(2) + along[3] * line(3)
-    }
-}
-
-/// Weights of the cosines, at these equally spaced frequencies from 0, of the even part of a function that falls
-/// linearly from 1 at `ends[0]` to 0 at `ends[1]`; a period of the first frequency after 0 has to hold both.
-pub(crate) fn falling(ends: [f64; 2], frequencies: &[f64]) -> Vec<f64> {
-    let half_period = PI / frequencies[1];
-    let [a, b] = ends.map(|x| x.clamp(-half_period, half_period));
-    let mean = 0.5 * (a + b);
-    let weight = |r: &f64| {
-        if *r == 0.0 {
-            return (half_period + mean) / (TAU / frequencies[1]);
-        }
-        // The mean of sin(r x) over [a, b].
-        let spread = 0.5 * r * (b - a);
-        let narrow = if spread.abs() < 1e-6 { 1.0 } else { spread.sin() / spread };
-        narrow * (r * mean).sin() / (r * half_period)
-    };
-    frequencies.iter().map(weight).collect()
 }
 
 #[cfg(test)]
@@ -307,39 +217,5 @@ mod tests {
             let x = f64::from(i) * 0.01;
             assert!((bessel(x) - libm::j0(x)).abs() < if x < 64.0 { 1e-8 } else { 2e-6 }, "{x}");
         }
-    }
-
-    #[test]
-    fn falling_is_its_cosine_series() {
-        let frequencies: Vec<f64> = (0..4000).map(|i| f64::from(i) * 0.5).collect();
-        for ends in [[-3.0, -1.5], [-3.0, -3.0], [-2.0, 1.0]] {
-            let weights = falling(ends, &frequencies);
-            for x in [-5.0, -2.5, -1.7, 0.3, 0.9, 2.2, 5.5] {
-                let at = |x: f64| {
-                    if x <= ends[0] {
-                        1.0
-                    } else if x >= ends[1] {
-                        0.0
-                    } else {
-                        (ends[1] - x) / (ends[1] - ends[0])
-                    }
-                };
-                let series: f64 = frequencies.iter().zip(&weights).map(|(r, w)| w * (r * x).cos()).sum();
-                assert!((series - 0.5 * (at(x) + at(-x))).abs() < 1e-3, "{ends:?} {x}: {series}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_gaussian_transforms_into_one() {
-        let q: Vec<f64> = (0..60).map(|i| f64::from(i) * 0.15).collect();
-        let spectrum: Vec<f64> =
-            q.iter().flat_map(|u| q.iter().map(move |c| (-0.5 * (u * u + 0.49 * c * c)).exp())).collect();
-        let table = SlopeTable::transform(&spectrum, [&q, &q], [0.125, 0.1], [50, 40]);
-        for (u, c) in [(0.0f64, 0.0f64), (0.3, -0.44), (-2.07, 1.1), (4.01, 2.03)] {
-            let expected = (-0.5 * (u * u + c * c / 0.49)).exp() / (TAU * 0.7);
-            assert!((table.at([u, c]) - expected).abs() < 1e-5, "{u} {c}");
-        }
-        assert_eq!(table.at([7.0, 0.0]), 0.0);
     }
 }

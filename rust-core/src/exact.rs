@@ -3,8 +3,8 @@
 //! A beam from `i` meets a slope `s` of the drawn surface in proportion to its density `p(s)` and to the area that it
 //! shows, `A(s) = max(0, N.i)/N_z`. So the mean of f is `integral p A f ds/integral p A ds`, and the mean of its square,
 //! of its product with the local cosine and its distribution follow alike. `p` comes from the characteristic
-//! function of one component (module `characteristic`); so does `W(s)`, the density times the probability of a whitecap at
-//! that slope, where whitecaps matter.
+//! function of one component (modules `characteristic` and `slope_density`); so does
+//! `W(s)`, the density times the probability of a whitecap at that slope, where whitecaps matter.
 //!
 //! Source and observers are taken to be far away compared with the waves: directions are those from the place where
 //! the beam meets the mean surface. What waves hide is known on average only: the share of an observer's view is
@@ -12,37 +12,31 @@
 //! variance. The ray cast of [`crate::Ensemble`] is the reference for low views.
 
 use crate::brdf::Facets;
-use crate::characteristic::{Component, SlopeTable, falling};
+use crate::characteristic::Component;
 use crate::ensemble::{QUANTILES, Statistics};
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::{gauss_legendre, midpoints, panels};
 use crate::scenario::Engagement;
 use crate::shadowing::hidden;
+use crate::slope_density::Slopes;
 use crate::surface::normal;
-use crate::{Error, Water, whitecap};
+use crate::{Error, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use std::f64::consts::{PI, SQRT_2};
+use std::f64::consts::{SQRT_2, TAU};
 
 /// Fewest components whose slope has a density smooth enough for these sums.
 pub const FEWEST_COMPONENTS: u32 = 4;
-/// The density is tabulated to so many standard deviations, in steps of this many.
-const DENSITY_END: f64 = 8.5;
-const DENSITY_STEP: f64 = 0.125;
-/// The facets' lobe blurs what it is multiplied with: frequencies fade out between so many over its standard
-/// deviation (or the drawn slopes', if that is less), or end where the characteristic function has become this small.
-const FREQUENCIES: [f64; 2] = [5.0, 8.0];
-const NEGLIGIBLE: f64 = 1e-6;
 /// Every how many nodes of the table are used where a sum over all slopes is smooth, and for quantiles.
 const COARSE: usize = 4;
 const FINE: usize = 2;
 /// Integrals reach to so many standard deviations of the facets' lobe, and of its product with the drawn slopes',
 const LOBE_END: f64 = 4.5;
 const PRODUCT_END: f64 = 5.0;
-/// in steps of so many of the lobe's or the drawn slopes'; where they are cut off, with so many of Gauss's nodes.
-const STEP: f64 = 0.66;
+/// in steps that resolve the density's frequencies together with the lobe's to so many over its standard deviation; where
+/// they are cut off, with so many of Gauss's nodes on so many steps.
+const LOBE_FREQUENCY: f64 = 4.5;
 const NODES: usize = 24;
-/// Whitecaps rarer than this are left out.
-const RARE: f64 = 1e-5;
+const PANEL: f64 = 14.0;
 
 /// The slope density of a drawn sea and what it reflects.
 #[derive(Debug, Clone)]
@@ -54,16 +48,6 @@ pub struct Exact {
     /// `None`: no waves, the surface is level.
     slopes: Option<Slopes>,
     rule: Vec<(f64, f64)>,
-}
-
-/// The slopes of a drawn surface, in components upwind and crosswind.
-#[derive(Debug, Clone)]
-struct Slopes {
-    /// Standard deviations.
-    sigma: DVec2,
-    density: SlopeTable,
-    /// W: density times probability of a whitecap.
-    capped: Option<SlopeTable>,
 }
 
 /// Mean of f and of its relatives for one observer, 1/sr.
@@ -136,8 +120,7 @@ impl Exact {
         let direction = -DVec3::from(engagement.direction());
         let lit = self.slopes.as_ref().map_or(direction.z, |slopes| {
             // Slopes have no mean: where all face the source the area shown is that of the level surface.
-            let spread = slopes.spread(self.in_wind(direction.truncate()));
-            if direction.z > DENSITY_END * spread {
+            if slopes.all_face(self.in_wind(direction.truncate()), direction.z) {
                 direction.z
             } else {
                 self.sum(slopes, FINE, |s, p, _| p * shown(s, direction))
@@ -222,23 +205,19 @@ impl Exact {
             if tip >= 0.0 { last = last.min(tip) } else { first = first.max(tip) }
         }
         let [left, right] = reach(f);
-        let finest = lobe.min(slopes.sigma);
-        let columns = if first > start || last < end {
-            self.rule
-                .iter()
-                .map(|(x, w)| (0.5 * (first + last) + 0.5 * (last - first) * x, 0.5 * (last - first) * w))
-                .collect()
-        } else {
-            midpoints(start, end, STEP * (e * finest).length())
-        };
+        let step = TAU / (slopes.frequency + LOBE_FREQUENCY / lobe);
         if first >= last {
             return;
         }
-        for (y, height) in midpoints(left, right, STEP * (f * finest).length()) {
+        let columns = if first > start || last < end {
+            panels(&self.rule, first, last, PANEL * (e * step).length())
+        } else {
+            midpoints(start, end, (e * step).length())
+        };
+        for (y, height) in midpoints(left, right, (f * step).length()) {
             for (x, width) in &columns {
                 let slope = e * *x + f * y;
-                let density = slopes.density.at(slope.into());
-                let capped = slopes.capped.as_ref().map_or(0.0, |table| table.at(slope.into()));
+                let (density, capped) = slopes.at(slope);
                 add(self.in_world(slope), width * height, density, capped);
             }
         }
@@ -304,129 +283,6 @@ fn shown(slope: DVec2, v: DVec3) -> f64 {
 fn facet_spread(facets: &Facets<f64>, specular: DVec2) -> DVec2 {
     let widened = if facets.slope_measure { DVec2::ONE } else { DVec2::ONE + specular * specular };
     DVec2::new(facets.sigma_u, facets.sigma_c) * widened
-}
-
-impl Slopes {
-    fn new(component: &Component, water: &Water) -> Self {
-        let components = f64::from(water.parameters.components);
-        let [u, c, _] = component.variances(components).map(f64::sqrt);
-        let [bound_u, bound_c, _] = component.bounds(components);
-        let facets = [water.lobe.facets.sigma_u, water.lobe.facets.sigma_c];
-        let axes =
-            [(u, bound_u, facets[0], 0), (c, bound_c, facets[1], 1)].map(|(sigma, bound, facet, axis)| {
-                let half_period = (DENSITY_END * sigma).min(1.05 * bound);
-                let step = PI / half_period;
-                let finest = sigma.min(facet);
-                let count = (FREQUENCIES[1] / finest / step) as usize + 2;
-                let frequencies: Vec<f64> = (0..count).map(|n| n as f64 * step).collect();
-                let on_axis = match axis {
-                    0 => component.slope(&frequencies, &[0.0]),
-                    _ => component.slope(&[0.0], &frequencies),
-                };
-                let used =
-                    on_axis.iter().rposition(|c| c.abs().powf(components) > NEGLIGIBLE).unwrap_or(0) + 2;
-                let frequencies: Vec<f64> = frequencies.into_iter().take(used).collect();
-                let fine = (DENSITY_STEP * sigma).min(1.0 / (used as f64 * step));
-                Axis { frequencies, finest, step: fine, count: (half_period / fine) as usize }
-            });
-        let [upwind, crosswind] = &axes;
-        let transform = |mut spectrum: Vec<f64>| {
-            for (row, u) in spectrum.chunks_mut(crosswind.frequencies.len()).zip(&upwind.frequencies) {
-                for (value, c) in row.iter_mut().zip(&crosswind.frequencies) {
-                    *value *= taper(u * upwind.finest) * taper(c * crosswind.finest);
-                }
-            }
-            let frequencies = [&upwind.frequencies[..], &crosswind.frequencies];
-            let (steps, counts) = ([upwind.step, crosswind.step], [upwind.count, crosswind.count]);
-            SlopeTable::transform(&spectrum, frequencies, steps, counts)
-        };
-        let slope = component.slope(&upwind.frequencies, &crosswind.frequencies);
-        Self {
-            sigma: DVec2::new(u, c),
-            density: transform(slope.into_iter().map(|c| c.powi(components as i32)).collect()),
-            capped: caps(component, water, &upwind.frequencies, &crosswind.frequencies).map(transform),
-        }
-    }
-
-    /// Where the tables end.
-    fn end(&self) -> DVec2 {
-        let [u, c] = [0, 1].map(|axis| self.density.counts[axis] as f64 * self.density.steps[axis]);
-        DVec2::new(u, c)
-    }
-
-    /// Standard deviation of the slope along a horizontal vector upwind and crosswind, times its length.
-    fn spread(&self, along: DVec2) -> f64 {
-        (self.sigma * along).length()
-    }
-
-    /// Every `stride`th node of the tables with its mirror images: slope upwind and crosswind, density and W.
-    fn nodes(&self, stride: usize, mut call: impl FnMut(DVec2, f64, f64)) {
-        let [rows, columns] = self.density.counts;
-        for i in (0..rows).step_by(stride) {
-            for j in (0..columns).step_by(stride) {
-                let slope = DVec2::new(i as f64 * self.density.steps[0], j as f64 * self.density.steps[1]);
-                let density = self.density.node(i, j);
-                let capped = self.capped.as_ref().map_or(0.0, |table| table.node(i, j));
-                for u in if i == 0 { &[1.0][..] } else { &[1.0, -1.0] } {
-                    for c in if j == 0 { &[1.0][..] } else { &[1.0, -1.0] } {
-                        call(slope * DVec2::new(*u, *c), density, capped);
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Frequencies and slopes along the wind or across it.
-struct Axis {
-    frequencies: Vec<f64>,
-    /// The smaller one of the standard deviations of facets and drawn slopes.
-    finest: f64,
-    /// Between slopes of the table.
-    step: f64,
-    count: usize,
-}
-
-/// 1 falling smoothly to 0 between the ends of [`FREQUENCIES`].
-fn taper(x: f64) -> f64 {
-    let [start, end] = FREQUENCIES;
-    let t = ((x - start) / (end - start)).clamp(0.0, 1.0);
-    (0.5 * PI * t).cos().powi(2)
-}
-
-/// Middles and widths of equal parts of an interval, none wider than `step`.
-fn midpoints(start: f64, end: f64, step: f64) -> Vec<(f64, f64)> {
-    let count = ((end - start) / step).ceil().max(1.0);
-    let width = (end - start) / count;
-    (0..count as usize).map(|i| (start + (i as f64 + 0.5) * width, width)).collect()
-}
-
-/// The transform of W over the slope's frequencies; `None` where whitecaps are off or too rare to matter.
-fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64]) -> Option<Vec<f64>> {
-    if !water.parameters.whitecaps {
-        return None;
-    }
-    let count = f64::from(water.parameters.components);
-    let (sigma, bound) = (component.variances(count)[2].sqrt(), component.bounds(count)[2]);
-    let ends = whitecap::onset(water.wind.friction_velocity).map(|a| 0.01 * a);
-    if ends[1] <= -bound {
-        return None;
-    }
-    let half_period = 1.05 * bound.min(7.0 * sigma);
-    let step = PI / half_period;
-    let mut frequencies: Vec<f64> =
-        (0..).map(|n| f64::from(n) * step).take_while(|r| *r < 10.0 / sigma).collect();
-    let mut level = component.acceleration(&frequencies);
-    let used = level.iter().rposition(|c| c.abs().powf(count) > NEGLIGIBLE).unwrap_or(0) + 2;
-    frequencies.truncate(used);
-    level.truncate(used);
-    let weights = falling(ends, &frequencies);
-    let sum = |row: &[f64]| row.iter().zip(&weights).map(|(c, w)| w * c.powi(count as i32)).sum::<f64>();
-    if sum(&level) < RARE {
-        return None;
-    }
-    let joint = component.slope_and_acceleration(upwind, crosswind, &frequencies);
-    Some(joint.chunks(frequencies.len()).map(sum).collect())
 }
 
 /// A distribution of values not below 0, the rest of the probability at 0.

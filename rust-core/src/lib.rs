@@ -54,6 +54,7 @@ pub mod real;
 pub mod sampling;
 pub mod scenario;
 pub mod shadowing;
+mod slope_density;
 pub mod slopes;
 pub mod spectrum;
 pub mod surface;

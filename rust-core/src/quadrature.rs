@@ -1,4 +1,19 @@
-//! Nodes and weights of Gauss and Legendre's rule.
+//! Nodes and weights: equal steps, which are best for what fades out at both ends, and Gauss and Legendre's for the rest.
+
+/// Middles and widths of equal parts of an interval, none wider than `step`.
+pub(crate) fn midpoints(start: f64, end: f64, step: f64) -> Vec<(f64, f64)> {
+    let count = ((end - start) / step).ceil().max(1.0);
+    let width = (end - start) / count;
+    (0..count as usize).map(|i| (start + (i as f64 + 0.5) * width, width)).collect()
+}
+
+/// A rule for (-1, 1) on every one of equal parts of an interval, none wider than `width`.
+pub(crate) fn panels(rule: &[(f64, f64)], start: f64, end: f64, width: f64) -> Vec<(f64, f64)> {
+    let on = |(middle, width): (f64, f64)| {
+        rule.iter().map(move |(x, weight)| (middle + 0.5 * width * x, 0.5 * width * weight))
+    };
+    midpoints(start, end, width).into_iter().flat_map(on).collect()
+}
 
 /// `count` nodes in (-1, 1) with their weights: exact for polynomials to the degree 2 count - 1.
 pub(crate) fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {

@@ -230,3 +230,28 @@ fn with_obscuration_everywhere() {
     let seas = all(&[4.0, 8.0, 24.0, 56.0]);
     campaign(seas, |w, d, m, i| compare_with_the_ray_cast(&with_instances(sea(w, d, m), 200_000), i));
 }
+
+/// How far off obscuration by Smith's share is for low forward views: printed, for the documentation.
+#[test]
+#[ignore = "long: `cargo xtask verify` runs it"]
+fn low_views() {
+    let angles = [60.0, 65.0, 70.0, 75.0, 80.0, 85.0, 88.0];
+    println!("exact over drawn mean - 1 +- 1 standard error, %, and share obscured, at views {angles:?}");
+    for w in [4.0, 8.0, 24.0, 56.0] {
+        for incidence in [30.0, 60.0, 75.0] {
+            let water = with_instances(sea(w, 0.15, 5), 400_000);
+            let views: Vec<_> = angles.iter().map(|a| direction(*a, 0.0)).collect();
+            let engagement = Engagement::far(incidence, 10e3, &views, 1e6).unwrap();
+            let exact = Exact::new(&water).unwrap().statistics(&engagement, &[]);
+            let samples = Ensemble::new(&water).sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
+            print!("w* {w:2} theta_i {incidence}:");
+            for (o, exact) in exact.iter().enumerate() {
+                let drawn = samples.statistics(0, o, &[]);
+                let off = 100.0 * (exact.mean / drawn.mean - 1.0);
+                let error = 100.0 * drawn.sem / drawn.mean;
+                print!("  {off:+.1} +- {error:.1} ({:.3} {:.3})", exact.obscured, drawn.obscured);
+            }
+            println!();
+        }
+    }
+}
