@@ -1,4 +1,38 @@
 //! Statistics of the BRDF over drawn surfaces: the probabilistic BRDF (section 7 of the report).
+//!
+//! ```
+//! use prob_water::{Aim, Engagement, Ensemble, Exact, Parameters, Surface, Wind};
+//!
+//! # fn main() -> Result<(), prob_water::Error> {
+//! let water = Parameters {
+//!     wind: Wind::FrictionVelocity(8.0),
+//!     surface: Surface::Instance,
+//!     footprint: 0.15,
+//!     components: 5,
+//!     instances: 1000,
+//!     ..Parameters::default()
+//! }
+//! .configure()?;
+//!
+//! // A laser at 30 degrees of incidence, and who might look into its reflection; m, s.
+//! let engagement = Engagement::new(
+//!     0.0,
+//!     [-5000.0, 0.0, 8660.0],
+//!     Aim::Target([0.0, 0.0, 0.0]),
+//!     &[[5000.0, 0.0, 8660.0], [7000.0, 0.0, 7000.0]],
+//! )?;
+//!
+//! let ensemble = Ensemble::new(&water);
+//! ensemble.check(&engagement)?;                                        // memory, before it is taken
+//! let samples = ensemble.sample(&[engagement.clone()], &|_casts| ())?; // on all cores
+//! let statistics = samples.statistics(0, 1, &[0.01]);                  // engagement 0, observer 1, limits in 1/sr
+//!
+//! let exact = Exact::new(&water)?;                                     // infinitely many draws
+//! let mean = exact.means(&engagement)[1].f;
+//! assert!((statistics.mean - mean).abs() < 5.0 * statistics.sem);
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::cast::Path;
 use crate::scenario::Engagement;

@@ -83,9 +83,22 @@ fn run_pytest(options: &[&str]) -> Result<()> {
     )
 }
 
-/// The campaigns that are too long for every change: the Python checks with many more samples and the live peer, and
-/// the error table of docs/float32.md.
+/// The campaigns that are too long for every change: ray casting and exact statistics against draws, the Python checks
+/// with many more samples and the live peer, and the error table of docs/float32.md.
 pub fn verify() -> Result<()> {
+    let ignored = [
+        "test",
+        "--release",
+        "-p",
+        "prob-water",
+        "--tests",
+        "--",
+        "--ignored",
+        "--nocapture",
+        "--test-threads",
+        "1",
+    ];
+    util::run(util::cargo().args(ignored), "the long Rust tests")?;
     c_api::c_test()?;
     build::build(&build::default_out())?;
     setup::peer()?;
