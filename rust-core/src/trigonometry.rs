@@ -1,7 +1,7 @@
-//! Sine and cosine of several angles at once. Wave sums spend most of their time here, and the platform's functions
-//! take one angle at a time: these are branch-free, so that the compiler makes vector instructions of them
-//! (`cargo xtask bench` compares). The polynomials are the well-known minimax ones of
-//! Sun's fdlibm, good to the last digit within an eighth of a turn.
+//! Sine and cosine of several angles at once, without branches. Wave sums spend most of their time here: with the
+//! platform's functions rays take 1.6 times as long (measured once, 5 components) and instances of 320 components 1.8
+//! times. The polynomials are the well-known minimax ones of Sun's fdlibm, good to the last digit within an eighth of a
+//! turn.
 
 /// Angles at once.
 pub(crate) const LANES: usize = 4;
