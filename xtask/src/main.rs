@@ -5,6 +5,7 @@ mod bench;
 mod build;
 mod c_api;
 mod cargo;
+mod figures;
 mod render;
 mod setup;
 mod test;
@@ -20,6 +21,8 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   build [--out DIR] build the Mitsuba plugin into DIR/plugins (default: target/mitsuba)
   render [--quality preview|final] [--variant V] [--only NAME]
                     build, then render the review images into out/ (options of validation/render.py)
+  figures [--quick] [--only NAME]
+                    build the command and draw the report's figures into out/report/ (options of validation/figures.py)
   test              run every check: Rust, C, plugin, Python, style
   verify            the long campaigns: more samples, the live peer, the table docs/float32.md
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
@@ -54,6 +57,7 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["build"] => build::build(&build::default_out())?,
         ["build", "--out", directory] => build::build(&std::path::absolute(directory)?)?,
         ["render", ..] => render::render(&arguments[1..])?,
+        ["figures", ..] => figures::figures(&arguments[1..])?,
         ["bench", ..] => bench::bench(&arguments[1..])?,
         ["test"] => test::test()?,
         ["verify"] => test::verify()?,

@@ -1,0 +1,32 @@
+//! The report's figures: `out/report/` filled by `validation/figures.py`, with the command just built.
+
+use crate::{setup, util};
+use anyhow::Result;
+
+/// Builds the command and draws; the arguments are the script's own.
+pub fn figures(arguments: &[String]) -> Result<()> {
+    build_command()?;
+    setup::setup()?;
+    println!("figures: into out/report/");
+    util::run(
+        util::command(setup::python()).args(["validation/figures.py", "--out", "out/report"]).args(arguments),
+        "validation/figures.py",
+    )
+}
+
+/// Builds `target/release/prob-water`, wherever else cargo is told to build.
+pub fn build_command() -> Result<()> {
+    println!("build: the command prob-water");
+    util::run(
+        util::cargo().args([
+            "build",
+            "--release",
+            "--quiet",
+            "-p",
+            "prob-water-cli",
+            "--target-dir",
+            "target",
+        ]),
+        "cargo build -p prob-water-cli",
+    )
+}
