@@ -101,8 +101,10 @@ fn open(path: &Path) -> io::Result<Out> {
         }
         std::process::exit(130);
     });
+    let folder = path.parent().unwrap_or(Path::new("/"));
+    fs::metadata(folder)?; // else the message would name the temporary file
     let mut all = TEMPORARIES.lock().unwrap();
-    let file = temporary_file(path.parent().unwrap_or(Path::new("/")))?;
+    let file = temporary_file(folder)?;
     all.push(file.path().to_owned());
     Ok(Out::Temporary { file, path, permissions: old.map(|old| old.permissions()) })
 }

@@ -9,7 +9,7 @@
 //!
 //! Everything is even in both slopes (upwind and crosswind) and in the acceleration.
 
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::{gauss_legendre, panels};
 use crate::spectrum::spreading;
 use crate::waves::Waves;
 use rayon::prelude::*;
@@ -37,21 +37,15 @@ impl Component {
     /// `None` where there are no waves.
     pub fn new(waves: &Waves) -> Option<Self> {
         let [low, high] = waves.log_range?;
-        // The spectrum is smooth between these.
-        let inner = [waves.spectrum.k0, waves.spectrum.k1]
-            .map(f64::ln)
-            .into_iter()
-            .filter(|k| (low..high).contains(k));
-        let ends: Vec<f64> = [low].into_iter().chain(inner).chain([high]).collect();
         let rule = gauss_legendre(WAVE_NUMBERS);
         let mut wave_numbers = vec![];
-        for piece in ends.windows(2) {
-            let (middle, half) = (0.5 * (piece[0] + piece[1]), 0.5 * (piece[1] - piece[0]));
-            wave_numbers.extend(rule.iter().map(|(x, weight)| {
-                let component = waves.component((middle + half * x).exp(), 0.0, waves.wind_azimuth);
+        for piece in waves.spectrum.pieces(low.exp(), high.exp()).windows(2) {
+            let (start, end) = (piece[0].ln(), piece[1].ln());
+            wave_numbers.extend(panels(&rule, start, end, end - start).into_iter().map(|(log_k, width)| {
+                let component = waves.component(log_k.exp(), 0.0, waves.wind_azimuth);
                 let amplitude = component.amplitude / spreading(0.0).sqrt();
                 let acceleration = amplitude * component.frequency.powi(2);
-                [weight * half / (high - low), amplitude * component.wave_number, acceleration]
+                [width / (high - low), amplitude * component.wave_number, acceleration]
             }));
         }
         let azimuths: Vec<_> = (0..AZIMUTHS)
@@ -210,6 +204,46 @@ fn bessel(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Variances of slope and acceleration against sums over 100,000 wave numbers, with fetch, depth and every form of
+    /// the spectrum.
+    #[test]
+    fn variances_are_the_spectrums() {
+        for (w, footprint) in
+            [(2.0, 0.05), (8.0, 0.15), (24.0, 0.15), (56.0, 0.15), (120.0, 0.02), (238.0, 0.05)]
+        {
+            for (fetch, depth) in
+                [(f64::INFINITY, f64::INFINITY), (300.0, 4.0), (800.0, 0.2), (5e3, 1e3), (5e4, 1e3)]
+            {
+                let waves = crate::Parameters {
+                    wind: crate::Wind::FrictionVelocity(w),
+                    footprint,
+                    fetch,
+                    depth,
+                    ..crate::Parameters::default()
+                }
+                .configure()
+                .unwrap()
+                .waves();
+                let found = Component::new(&waves).unwrap().variances;
+                let [low, high] = waves.log_range.unwrap();
+                let n = 100_000;
+                let mut sums = [0.0; 2];
+                for i in 0..n {
+                    let k = (low + (high - low) * (f64::from(i) + 0.5) / f64::from(n)).exp();
+                    let c = waves.component(k, 0.0, waves.wind_azimuth);
+                    let energy = c.amplitude.powi(2) / spreading(0.0) / f64::from(n);
+                    sums[0] += energy * c.wave_number.powi(2);
+                    sums[1] += energy * c.frequency.powi(4);
+                }
+                // F has the mean 1/pi over the azimuths drawn.
+                for (found, sum) in [(found[0] + found[1], sums[0]), (found[2], sums[1])] {
+                    let off = found / (0.5 * sum / PI) - 1.0;
+                    assert!(off.abs() < 1e-4, "w* {w} D {footprint} fetch {fetch} depth {depth}: {off:e}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn bessel_follows_libm() {

@@ -17,7 +17,7 @@ use crate::ensemble::{QUANTILES, Statistics};
 use crate::quadrature::{gauss_legendre, midpoints, panels};
 use crate::scenario::Engagement;
 use crate::shadowing::hidden;
-use crate::slope_density::Slopes;
+use crate::slope_density::{Point, Slopes};
 use crate::surface::normal;
 use crate::{Error, Water};
 use glam::{DVec2, DVec3};
@@ -26,7 +26,7 @@ use std::f64::consts::{SQRT_2, TAU};
 
 /// Fewest components whose slope has a density smooth enough for these sums.
 pub const FEWEST_COMPONENTS: u32 = 4;
-/// Every how many nodes of the table are used where a sum over all slopes is smooth, and for quantiles.
+/// Every how many nodes of the table are used where a sum over all slopes is smooth, and where it has a kink.
 const COARSE: usize = 4;
 const FINE: usize = 2;
 /// Integrals reach to so many standard deviations of the facets' lobe, and of its product with the drawn slopes',
@@ -62,22 +62,23 @@ pub struct Means {
 }
 
 impl Exact {
-    /// The density of the sea's slopes, for `components` of at least [`FEWEST_COMPONENTS`].
+    /// The density of the sea's slopes. Refused: fewer components than [`FEWEST_COMPONENTS`], and footprints whose facets
+    /// are finer than the drawn slopes by orders of magnitude.
     pub fn new(water: &Water) -> Result<Self, Error> {
         let waves = water.waves();
-        if water.parameters.components < FEWEST_COMPONENTS {
+        let component = Component::new(&waves);
+        if component.is_some() && water.parameters.components < FEWEST_COMPONENTS {
             return Err(Error::OutOfRange {
                 parameter: "components",
                 value: water.parameters.components.to_string(),
                 allowed: format!("at least {FEWEST_COMPONENTS} for exact statistics"),
             });
         }
-        let component = Component::new(&waves);
         Ok(Self {
             water: *water,
             wind: DVec2::from_angle(waves.wind_azimuth),
             obscuration: true,
-            slopes: component.map(|component| Slopes::new(&component, water)),
+            slopes: component.map(|component| Slopes::new(&component, water)).transpose()?,
             rule: gauss_legendre(NODES),
         })
     }
@@ -91,9 +92,10 @@ impl Exact {
     /// Everything for every observer of an engagement; quantiles and exceedances to a few thousandths in probability.
     pub fn statistics(&self, engagement: &Engagement, limits: &[f64]) -> Vec<Statistics> {
         let source = self.source(engagement);
+        let points = self.slopes.as_ref().map_or(vec![], Slopes::points);
         self.each(engagement, |o| {
             let means = self.mean(&source, o);
-            let (distribution, whitecaps) = self.distribution(&source, o);
+            let (distribution, whitecaps) = self.distribution(&points, &source, o);
             Statistics {
                 mean: means.f,
                 std: (means.f_squared - means.f * means.f).max(0.0).sqrt(),
@@ -169,7 +171,9 @@ impl Exact {
             means.f_cos += f * foam(&|s| DVec3::from(normal(s.into())).dot(o));
         }
         let scale = self.visible(source, o) / source.lit;
-        Means { f: scale * means.f, f_cos: scale * means.f_cos, f_squared: scale * means.f_squared }
+        // Far out, where the density is nothing but ripples, sums may fall below 0.
+        let [f, f_cos, f_squared] = [means.f, means.f_cos, means.f_squared].map(|sum| (scale * sum).max(0.0));
+        Means { f, f_cos, f_squared }
     }
 
     /// Calls `add` with slope, area, density and W at the nodes of a rectangle that holds where the drawn slopes and
@@ -232,30 +236,30 @@ impl Exact {
     }
 
     /// The distribution of f over the hits, and the share of whitecaps among them.
-    fn distribution(&self, source: &Source, o: DVec3) -> (Distribution, f64) {
+    fn distribution(&self, points: &[Point], source: &Source, o: DVec3) -> (Distribution, f64) {
         let lobe = &self.water.lobe;
         let i = source.direction;
+        if self.slopes.is_none() {
+            return (Distribution::new(vec![(self.mean(source, o).f, 1.0)]), 0.0);
+        }
         let visible = self.visible(source, o);
+        let (mut area, mut foam) = (0.0, 0.0);
         let mut values = vec![];
-        let mut foam = 0.0;
-        let Some(slopes) = &self.slopes else {
-            let f = self.mean(source, o).f;
-            return (Distribution::new(vec![(f, f64::from(o.z > 0.0))]), 0.0);
-        };
-        let area = self.sum(slopes, FINE, |s, density, capped| {
+        for point in points {
+            let s = self.in_world(point.slope);
             let shown_to_source = shown(s, i);
-            let weight = (density - capped).max(0.0) * shown_to_source;
-            foam += capped * shown_to_source;
-            if shown(s, o) > 0.0 && shown_to_source > 0.0 {
+            area += point.density * shown_to_source;
+            foam += point.capped * shown_to_source;
+            if shown(s, o) > 0.0 && point.density * shown_to_source > 0.0 {
                 let f = lobe.facets.eval(i.into(), o.into(), normal(s.into()));
-                values.push((f, visible * weight));
-                values.push((lobe.whitecap_brdf, visible * capped * shown_to_source));
+                values.push((f, visible * (point.density - point.capped).max(0.0) * shown_to_source));
+                if point.capped > 0.0 {
+                    values.push((lobe.whitecap_brdf, visible * point.capped * shown_to_source));
+                }
             }
-            density * shown_to_source
-        });
-        let node = slopes.density.steps[0] * slopes.density.steps[1] * (FINE * FINE) as f64;
-        values.iter_mut().for_each(|(_, weight)| *weight *= node / area);
-        (Distribution::new(values), foam * node / area)
+        }
+        values.iter_mut().for_each(|(_, weight)| *weight /= area);
+        (Distribution::new(values), foam / area)
     }
 
     /// A horizontal vector in components upwind and crosswind.
@@ -313,9 +317,12 @@ impl Distribution {
     }
 
     fn quantile(&self, level: f64) -> f64 {
+        if level <= self.nothing() {
+            return 0.0;
+        }
         let next = self.steps.partition_point(|(_, probability)| *probability < level);
         match (next.checked_sub(1).map(|i| self.steps[i]), self.steps.get(next)) {
-            (None, Some(_)) => 0.0,
+            (None, Some((first, _))) => *first,
             (Some((a, p)), Some((b, q))) => a + (b - a) * (level - p) / (q - p),
             (last, None) => last.map_or(0.0, |(value, _)| value),
         }

@@ -45,7 +45,8 @@ impl Engagement {
             }
             Aim::Direction(direction) => ("direction", direction, DVec3::from(direction)),
         };
-        let direction = beam.normalize_or_zero();
+        // Of any length: squares of the coordinates might not fit.
+        let direction = (beam / beam.abs().max_element()).normalize_or_zero();
         if !(beam.is_finite() && direction.z <= -FLATTEST_BEAM) {
             let allowed = "a beam that points down, at least 0.001 degrees below the horizontal";
             return refuse(name, shown(given), allowed);
@@ -56,7 +57,11 @@ impl Engagement {
         for observer in observers {
             position("observers", *observer)?;
         }
-        Ok(Self { time, laser, direction: direction.into(), observers: observers.into() })
+        let engagement = Self { time, laser, direction: direction.into(), observers: observers.into() };
+        if !within(engagement.target()) {
+            return refuse(name, shown(given), "a beam that meets the water at most 1e9 m from 0");
+        }
+        Ok(engagement)
     }
 
     /// The report's geometry for angles (Eqs. 80-82): a laser at an angle of incidence in degrees, so far from the
@@ -105,7 +110,11 @@ fn position(parameter: &'static str, position: [f64; 3]) -> Result<(), Error> {
     refuse(parameter, shown(position), "finite coordinates, at most 1e9 m from 0, with z above 0")
 }
 
-fn shown([x, y, z]: [f64; 3]) -> String {
+fn shown(position: [f64; 3]) -> String {
+    let [x, y, z] = position.map(|x| {
+        let long = x != 0.0 && !(1e-6..1e12).contains(&x.abs());
+        if long { format!("{x:e}") } else { x.to_string() }
+    });
     format!("[{x}, {y}, {z}]")
 }
 
@@ -125,6 +134,10 @@ mod tests {
         assert!((DVec3::from(e.direction()) - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-15);
         let e = Engagement::new(1.0, HIGH, Aim::Direction([0.0, 0.0, -7.0]), &[HIGH]).unwrap();
         assert_eq!(e.direction(), [0.0, 0.0, -1.0]);
+        for length in [1e300, 1e-300] {
+            let e = Engagement::new(1.0, HIGH, Aim::Direction([length, 0.0, -length]), &[HIGH]).unwrap();
+            assert!((e.direction()[2] + 0.5f64.sqrt()).abs() < 1e-15);
+        }
     }
 
     #[test]
@@ -139,6 +152,7 @@ mod tests {
             ("direction", Engagement::new(0.0, HIGH, Aim::Direction([1.0, 0.0, 1.0]), &[HIGH])),
             ("direction", Engagement::new(0.0, HIGH, Aim::Direction([0.0; 3]), &[HIGH])),
             ("direction", Engagement::new(0.0, HIGH, Aim::Direction([0.0, f64::NAN, -1.0]), &[HIGH])),
+            ("direction", Engagement::new(0.0, [0.0, 0.0, 1e6], Aim::Direction([1.0, 0.0, -2e-5]), &[HIGH])),
             ("target", Engagement::new(0.0, HIGH, Aim::Target([0.0, 0.0, 11.0]), &[HIGH])),
             ("target", Engagement::new(0.0, HIGH, Aim::Target(HIGH), &[HIGH])),
             ("target", Engagement::new(0.0, HIGH, Aim::Target([0.0, 0.0, f64::NAN]), &[HIGH])),

@@ -6,8 +6,9 @@
 //! crosswind; everything is even in both.
 
 use crate::characteristic::Component;
-use crate::{Water, whitecap};
+use crate::{Error, Water, whitecap};
 use glam::DVec2;
+use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Densities are tabulated to so many standard deviations, in steps of at most this many.
@@ -21,6 +22,12 @@ const NEGLIGIBLE: f64 = 1e-6;
 const FAINT: f64 = 3e-4;
 /// Whitecaps rarer than this are left out.
 const RARE: f64 = 1e-5;
+/// A standard deviation of the acceleration, m/s^2, so small that there is none.
+const STILL: f64 = 1e-6;
+/// Most frequencies and most slopes on an axis: up to there tables take a fraction of a second.
+const MOST: [usize; 2] = [400, 1200];
+/// Points for distributions.
+const POINTS: u32 = 8192;
 
 /// The slopes of a drawn surface.
 #[derive(Debug, Clone)]
@@ -36,14 +43,25 @@ pub(crate) struct Slopes {
 }
 
 impl Slopes {
-    /// The slopes of a sea's waves.
-    pub fn new(component: &Component, water: &Water) -> Self {
+    /// The slopes of a sea's waves; refused where the facets are so much finer that tables would be huge.
+    pub fn new(component: &Component, water: &Water) -> Result<Self, Error> {
         let components = f64::from(water.parameters.components);
         let [u, c, _] = component.variances(components).map(f64::sqrt);
         let [bound_u, bound_c, _] = component.bounds(components);
         let facets = &water.lobe.facets;
         let upwind = Axis::new(u, bound_u, facets.sigma_u, components, |q| component.slope(q, &[0.0]));
         let crosswind = Axis::new(c, bound_c, facets.sigma_c, components, |q| component.slope(&[0.0], q));
+        let (Some(upwind), Some(crosswind)) = (upwind, crosswind) else {
+            return Err(Error::OutOfRange {
+                parameter: "footprint",
+                value: water.parameters.footprint.to_string(),
+                allowed: format!(
+                    "for exact statistics one whose facets are not so much finer than the drawn slopes \
+                     (standard deviations upwind {:.2e} and {u:.2e}); more components help too",
+                    facets.sigma_u
+                ),
+            });
+        };
         let transform = |mut spectrum: Vec<f64>, [along, across]: [usize; 2]| {
             let frequencies = [&upwind.frequencies[..along], &crosswind.frequencies[..across]];
             for (row, u) in spectrum.chunks_mut(across).zip(frequencies[0]) {
@@ -60,12 +78,12 @@ impl Slopes {
         // Whitecaps are a small part of the whole: they need fewer frequencies.
         let few = [upwind.resolved, crosswind.resolved];
         let capped = caps(component, water, &upwind.frequencies[..few[0]], &crosswind.frequencies[..few[1]]);
-        Self {
+        Ok(Self {
             sigma: DVec2::new(u, c),
             frequency: DVec2::new(upwind.end(), crosswind.end()),
             density: transform(density, all),
             capped: capped.map(|spectrum| transform(spectrum, few)),
-        }
+        })
     }
 
     /// Where the tables end.
@@ -91,6 +109,27 @@ impl Slopes {
         (self.density.at(slope.into()), self.capped.as_ref().map_or(0.0, |table| table.at(slope.into())))
     }
 
+    /// Evenly spread points, of which sums are integrals over the slopes: half of them Gaussian as wide as the slopes and
+    /// half four times as dense about 0, where few waves of many sizes often leave the surface.
+    pub fn points(&self) -> Vec<Point> {
+        const WIDTHS: [f64; 2] = [1.2, 0.3];
+        // The steps of Roberts' sequence: powers of the root of x^3 = x + 1.
+        const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
+        let gauss = |r2: f64, width: f64| (-0.5 * r2 / (width * width)).exp() / (TAU * width * width);
+        let point = |n: u32| {
+            let [a, b] = STEPS.map(|step| (0.5 + step * f64::from(n)).fract());
+            let width = WIDTHS[(n % 2) as usize];
+            let place = DVec2::from_angle(TAU * b) * width * (-2.0 * (1.0 - a).ln()).sqrt();
+            let r2 = place.length_squared();
+            let crowd = 0.5 * (gauss(r2, WIDTHS[0]) + gauss(r2, WIDTHS[1])) / (self.sigma.x * self.sigma.y);
+            let slope = place * self.sigma;
+            let (density, capped) = self.at(slope);
+            let share = 1.0 / (crowd * f64::from(POINTS));
+            Point { slope, density: density * share, capped: capped * share }
+        };
+        (0..POINTS).map(point).collect()
+    }
+
     /// Every `stride`th node of the tables with its mirror images: slope upwind and crosswind, density and W.
     pub fn nodes(&self, stride: usize, mut call: impl FnMut(DVec2, f64, f64)) {
         let [rows, columns] = self.density.counts;
@@ -109,6 +148,13 @@ impl Slopes {
     }
 }
 
+/// A point of the plane of slopes: the slope upwind and crosswind, and p and W over the density of points.
+pub(crate) struct Point {
+    pub slope: DVec2,
+    pub density: f64,
+    pub capped: f64,
+}
+
 /// Frequencies and slopes along the wind or across it.
 struct Axis {
     frequencies: Vec<f64>,
@@ -123,12 +169,19 @@ struct Axis {
 
 impl Axis {
     /// For drawn slopes of a standard deviation, none beyond a bound, and facets; `of` is one component's
-    /// characteristic function on this axis.
-    fn new(sigma: f64, bound: f64, facet: f64, components: f64, of: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+    /// characteristic function on this axis. `None` where too many would be needed.
+    fn new(
+        sigma: f64,
+        bound: f64,
+        facet: f64,
+        components: f64,
+        of: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Option<Self> {
         let half_period = (END * sigma).min(1.05 * bound);
         let apart = PI / half_period;
         let finest = sigma.min(facet);
-        let count = (FADE[1] / finest / apart) as usize + 2;
+        // Beyond these no table would have room; one component's function shows whether that matters.
+        let count = ((FADE[1] / finest / apart) as usize + 2).min(2 * MOST[0]);
         let mut frequencies: Vec<f64> = (0..count).map(|n| n as f64 * apart).collect();
         let size: Vec<f64> = of(&frequencies)
             .iter()
@@ -139,7 +192,8 @@ impl Axis {
         let (used, resolved) = (to(NEGLIGIBLE).min(count), to(FAINT).min(count));
         frequencies.truncate(used);
         let step = (STEP * sigma).min(1.0 / frequencies[used - 1]);
-        Self { frequencies, resolved, finest, step, count: (half_period / step) as usize }
+        let axis = Self { frequencies, resolved, finest, step, count: (half_period / step) as usize };
+        (used <= MOST[0] && axis.count <= MOST[1]).then_some(axis)
     }
 
     fn end(&self) -> f64 {
@@ -165,6 +219,12 @@ fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64])
     if ends[1] <= -bound {
         return None;
     }
+    if sigma < STILL {
+        let probability = water.whitecap_probability(0.0);
+        let power = |c: f64| probability * c.powi(count as i32);
+        return (probability > RARE)
+            .then(|| component.slope(upwind, crosswind).into_iter().map(power).collect());
+    }
     let apart = PI / (1.05 * bound.min(7.0 * sigma));
     let mut frequencies: Vec<f64> =
         (0..).map(|n| f64::from(n) * apart).take_while(|r| *r < 10.0 / sigma).collect();
@@ -182,24 +242,33 @@ fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64])
 }
 
 /// Weights of the cosines, at these equally spaced frequencies from 0, of the even part of a function that falls
-/// linearly from 1 at `ends[0]` to 0 at `ends[1]`; a period of the first frequency after 0 has to hold both.
-pub(crate) fn falling(ends: [f64; 2], frequencies: &[f64]) -> Vec<f64> {
+/// linearly from 1 at `ends[0]` to 0 at `ends[1]`, over one period of the first frequency after 0.
+fn falling(ends: [f64; 2], frequencies: &[f64]) -> Vec<f64> {
+    // A mean over steps from 1 to 0, at places evenly spread between the ends; one beyond the period is 1 or 0 all over.
     let half_period = PI / frequencies[1];
     let [a, b] = ends.map(|x| x.clamp(-half_period, half_period));
-    let mean = 0.5 * (a + b);
+    let middle = 0.5 * (a + b);
+    let width = ends[1] - ends[0];
+    let inside = if width > 0.0 { (b - a) / width } else { f64::from(a.abs() < half_period) };
+    let beyond = if width > 0.0 {
+        (ends[1] - ends[0].max(half_period)).max(0.0) / width
+    } else {
+        f64::from(a >= half_period)
+    };
     let weight = |r: &f64| {
         if *r == 0.0 {
-            return (half_period + mean) / (TAU / frequencies[1]);
+            return beyond + inside * 0.5 * (1.0 + middle / half_period);
         }
         // The mean of sin(r x) over [a, b].
         let spread = 0.5 * r * (b - a);
         let narrow = if spread.abs() < 1e-6 { 1.0 } else { spread.sin() / spread };
-        narrow * (r * mean).sin() / (r * half_period)
+        inside * narrow * (r * middle).sin() / (r * half_period)
     };
     frequencies.iter().map(weight).collect()
 }
 
-/// What is less than this beside the largest value is taken for a ripple of the transform, and for 0.
+/// What is less than this beside the largest value is taken for a ripple of the transform, and for 0. Larger ripples,
+/// about a spike sharper than the frequencies, stay, for they sum up to nothing.
 const RIPPLE: f64 = 1e-6;
 
 /// A density of the slope, even in both of its parts, as a table with bicubic interpolation.
@@ -231,18 +300,17 @@ impl SlopeTable {
         };
         let (upwind, crosswind) = (cosines(0), cosines(1));
         let width = frequencies[1].len();
-        let mut values = Vec::with_capacity((counts[0] + 3) * (counts[1] + 3));
-        let mut line = vec![0.0; width];
-        for row in &upwind {
-            line.fill(0.0);
+        let row = |row: &Vec<f64>| {
+            let mut line = vec![0.0; width];
             for (weight, part) in row.iter().zip(spectrum.chunks(width)) {
                 line.iter_mut().zip(part).for_each(|(sum, x)| *sum += weight * x);
             }
             let value = |c: &Vec<f64>| c.iter().zip(&line).map(|(a, b)| a * b).sum::<f64>();
-            values.extend(crosswind.iter().map(value));
-        }
+            crosswind.iter().map(value).collect::<Vec<_>>()
+        };
+        let mut values: Vec<f64> = upwind.par_iter().flat_map_iter(row).collect();
         let floor = RIPPLE * values.iter().fold(0.0, |a: f64, b| a.max(*b));
-        values.iter_mut().filter(|x| **x < floor).for_each(|x| *x = 0.0);
+        values.iter_mut().filter(|x| x.abs() < floor).for_each(|x| *x = 0.0);
         Self { steps, counts, values }
     }
 
@@ -283,7 +351,7 @@ mod tests {
     #[test]
     fn falling_is_its_cosine_series() {
         let frequencies: Vec<f64> = (0..4000).map(|i| f64::from(i) * 0.5).collect();
-        for ends in [[-3.0, -1.5], [-3.0, -3.0], [-2.0, 1.0]] {
+        for ends in [[-3.0, -1.5], [-3.0, -3.0], [-2.0, 1.0], [-9.0, 3.0], [-20.0, -5.0], [-8.0, 11.0]] {
             let weights = falling(ends, &frequencies);
             for x in [-5.0, -2.5, -1.7, 0.3, 0.9, 2.2, 5.5] {
                 let at = |x: f64| {

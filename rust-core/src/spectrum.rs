@@ -43,6 +43,15 @@ pub struct Spectrum {
     scale_2: f64,
 }
 
+/// The parts of the spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    PiersonMoskowitz,
+    Stacey,
+    Kitaigorodskii,
+    Nothing,
+}
+
 /// Eqs. 11-13.
 #[derive(Debug, Clone, Copy)]
 struct Fetch {
@@ -98,17 +107,47 @@ impl Spectrum {
 
     /// S(k), cm^3 (Eqs. 10, 15, 17); 0 beyond k2.
     pub fn density(&self, k: f64) -> f64 {
-        if k <= self.k0.min(self.k2) {
-            self.pierson_moskowitz(k)
-        } else if k <= self.k1 {
-            let s = self.pierson_moskowitz(k);
-            if self.friction_velocity >= STACEY_LOW { s.max(self.stacey(k)) } else { s }
+        self.form(k).1
+    }
+
+    /// Which form the spectrum has at k, and its value.
+    fn form(&self, k: f64) -> (Form, f64) {
+        let w = self.friction_velocity;
+        let (form, s, stacey) = if k <= self.k1.min(self.k2) {
+            (Form::PiersonMoskowitz, self.pierson_moskowitz(k), k > self.k0 && w >= STACEY_LOW)
         } else if k <= self.k2 {
-            let s = self.kitaigorodskii(k);
-            if self.friction_velocity >= STACEY_HIGH { s.max(self.stacey(k)) } else { s }
+            (Form::Kitaigorodskii, self.kitaigorodskii(k), w >= STACEY_HIGH)
         } else {
-            0.0
+            return (Form::Nothing, 0.0);
+        };
+        let other = if stacey { self.stacey(k) } else { 0.0 };
+        if other > s { (Form::Stacey, other) } else { (form, s) }
+    }
+
+    /// Between these wave numbers, in order, rad/cm, the spectrum is smooth, and as flat as a few polynomials: its peak,
+    /// where its form changes, and the flanks of the peak that a fetch adds.
+    pub(crate) fn pieces(&self, low: f64, high: f64) -> Vec<f64> {
+        const SCAN: i32 = 512;
+        let at = |i: i32| low * (high / low).powf(f64::from(i) / f64::from(SCAN));
+        let mut ends = vec![low, high, self.k0];
+        for i in 0..SCAN {
+            let (a, b) = (at(i), at(i + 1));
+            let form = self.form(a).0;
+            if self.form(b).0 != form {
+                ends.push(bisect(a, b, |k| self.form(k).0 != form));
+            }
         }
+        for off in
+            self.fetch.iter().flat_map(|fetch| [0.75, 0.88, 1.0, 1.15, 1.32].map(|off| off * fetch.peak))
+        {
+            if self.frequency(low) < off && off < self.frequency(high) {
+                ends.push(bisect(low, high, |k| self.frequency(k) >= off));
+            }
+        }
+        ends.retain(|k| (low..=high).contains(k));
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        ends
     }
 
     /// Eq. 10 with the correction for fetch, Eq. 11.

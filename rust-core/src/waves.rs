@@ -6,7 +6,7 @@
 //! the stream. A uniform number is the upper 53 bits of the next 64, over 2^53. The first decides about the whitecap,
 //! then every component takes three: wave number, phase, azimuth. More components do not change the first ones.
 //!
-//! [`Draws::Sobol`] replaces the upper 24 bits of the first 256 numbers by Burley's hashed Sobol sequence, its 65536 points
+//! [`Draws::Sobol`] replaces the upper 23 bits of the first 256 numbers by Burley's hashed Sobol sequence, its 65536 points
 //! by a new scramble for every 65536 instances.
 
 use crate::spectrum::{Spectrum, spreading};
@@ -152,7 +152,7 @@ impl Numbers {
         };
         let upper = f64::from(sobol_burley::sample(point.index, point.dimension, point.scramble));
         point.dimension += 1;
-        (upper + u / f64::from(1 << 24)).min(1.0 - f64::EPSILON / 2.0)
+        (upper + u / f64::from(1 << 23)).min(1.0 - f64::EPSILON / 2.0)
     }
 }
 
