@@ -89,7 +89,7 @@ impl Exact {
         self.each(engagement, |o| self.mean(&source, o))
     }
 
-    /// Everything for every observer of an engagement; quantiles and exceedances to a few thousandths in probability.
+    /// Everything for every observer of an engagement; quantiles and exceedances to 0.01 in probability.
     pub fn statistics(&self, engagement: &Engagement, limits: &[f64]) -> Vec<Statistics> {
         let source = self.source(engagement);
         let points = self.slopes.as_ref().map_or(vec![], Slopes::points);
