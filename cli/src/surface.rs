@@ -1,4 +1,4 @@
-//! `prob-water surface`: a drawn sea, as points of its surface or as the waves it is made of.
+//! `prob-water surface`: a drawn sea, as points of its surface, as the waves it is made of, or as their bounds.
 
 use crate::input::{self, Columns, STRIDE};
 use crate::progress::Progress;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// The subcommand's flags.
 pub fn command() -> Command {
     Command::new("surface")
-        .about("Points of a drawn sea, or the waves it is made of")
+        .about("Points of a drawn sea, the waves it is made of, or their bounds")
         .arg(
             Arg::new("points")
                 .long("points")
@@ -36,7 +36,13 @@ pub fn command() -> Command {
                 .action(ArgAction::SetTrue)
                 .help("the waves themselves"),
         )
-        .group(ArgGroup::new("what").args(["points", "grid", "waves"]).required(true))
+        .arg(
+            Arg::new("bounds")
+                .long("bounds")
+                .action(ArgAction::SetTrue)
+                .help("height and slope that the waves nowhere exceed (Eqs. 42-45)"),
+        )
+        .group(ArgGroup::new("what").args(["points", "grid", "waves", "bounds"]).required(true))
         .arg(
             Arg::new("instance")
                 .long("instance")
@@ -73,7 +79,7 @@ fn grid(text: &str) -> Result<Grid, String> {
     Ok(Grid { size, step })
 }
 
-/// Writes the points asked for, or the waves.
+/// Writes the points asked for, the waves or the bounds.
 pub fn run(matches: &ArgMatches) -> Outcome {
     let sea = Sea {
         all: Ensemble::new(&parameters::water_on("instance", matches)?),
@@ -86,8 +92,10 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     } else if let Some(path) = matches.get_one::<PathBuf>("points") {
         let points = points(&input::read(path)?, sea.all.water.parameters.time)?;
         sea.write(matches, points.len() as u64, points.into_iter())
-    } else {
+    } else if matches.get_flag("waves") {
         sea.write_waves(matches)
+    } else {
+        sea.write_bounds(matches)
     }
 }
 
@@ -152,6 +160,13 @@ impl Sea {
                 progress.at(row as u64);
             }
         }
+        table::end([out])
+    }
+
+    fn write_bounds(&self, matches: &ArgMatches) -> Outcome {
+        let surface = RealisedSurface::new(self.components(), 0.0);
+        let mut out = Table::new(matches, ["highest", "steepest"])?;
+        out.row(&[surface.highest(), surface.steepest()].map(Cell::Number))?;
         table::end([out])
     }
 

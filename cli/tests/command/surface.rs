@@ -31,6 +31,12 @@ fn points_follow_from_the_waves() {
         assert!(wavelength >= 0.3 * (1.0 - 1e-12), "two footprints and longer");
     }
 
+    let bounds = succeed(&format!("surface --bounds {SEA}"), "");
+    let (k, a) = (floats(&waves, "wave_number_rad_m"), floats(&waves, "amplitude_m"));
+    assert!((floats(&bounds, "highest")[0] - a.iter().sum::<f64>()).abs() < 1e-12);
+    let steepest: f64 = k.iter().zip(a).map(|(k, a)| k * a).sum();
+    assert!((floats(&bounds, "steepest")[0] - steepest).abs() < 1e-12);
+
     let input = "time,y,x\n0,0,0\n2.5,-3,4.25\n2.5,1e2,0\n-7,0.5,-60\n";
     let text = succeed(&format!("surface --points - {SEA} --time 99"), input);
     assert_eq!(text.lines().next(), Some(HEADER));
