@@ -8,6 +8,7 @@ use crate::optics::Reflectance;
 use crate::real::{Vec3, dot};
 use crate::shadowing::hidden;
 use crate::slopes::gram_charlier;
+use glam::DVec2;
 
 /// The normal of a flat sea.
 pub fn up<T: Real>() -> Vec3<T> {
@@ -129,6 +130,20 @@ impl<T: Real> Facets<T> {
         let u = clamp(-self.measure(g.tilt_u) / self.sigma_u);
         let c = clamp(self.measure(g.tilt_c) / self.sigma_c);
         self.scale * T::narrow(self.tilt_density(u, c, g.cos_xi))
+    }
+
+    /// `p/cos^4 xi` with the constants of Eq. 56, of facets along a unit `h` about the wave normal `n`.
+    pub(crate) fn density_along(&self, h: Vec3<T>, n: Vec3<T>) -> T {
+        self.density(&self.geometry(h, h, n))
+    }
+
+    /// `rho G`, 0 where `n` turns from one of the directions.
+    pub(crate) fn shadowed_reflectance(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+        let g = self.geometry(i, o, n);
+        let [ci, cr] = g.cos;
+        let zero = T::of(0.0);
+        let lit = T::lt(zero, ci) & T::lt(zero, cr);
+        T::select(lit, self.visible_reflectance(&g, i, o, n) * ci * cr, zero)
     }
 
     /// The same over its constants, for tilts U and C in standard deviations.
@@ -278,6 +293,12 @@ impl Lobe<f64> {
 const BOUND_SLACK: f64 = 1.11;
 
 impl Facets<f64> {
+    /// How far, in slope upwind and crosswind, a wave's slope may be from a facet's: a tilt's standard deviation there.
+    pub(crate) fn spread(&self, facet: DVec2) -> DVec2 {
+        let widened = if self.slope_measure { DVec2::ONE } else { DVec2::ONE + facet * facet };
+        DVec2::new(self.sigma_u, self.sigma_c) * widened
+    }
+
     /// Whether [`Facets::visible_bound`] matters: scanned over both elevations, with the largest
     /// reflectance (forward) and the rougher azimuth. Above w* = 9 cm/s (for an infinite footprint; below
     /// for smaller ones) it does not, and costs nothing.

@@ -11,30 +11,22 @@
 //! Smith's for heights that source and observer see together, `(1 + L_i)/(1 + L_i + L_o)`, with the drawn slopes'
 //! variance. The ray cast of [`crate::Ensemble`] is the reference for low views.
 
-use crate::brdf::Facets;
 use crate::characteristic::Component;
 use crate::ensemble::{QUANTILES, Statistics};
 use crate::quadrature::{gauss_legendre, midpoints, panels};
 use crate::scenario::Engagement;
-use crate::shadowing::hidden;
 use crate::slope_density::{Point, Slopes};
 use crate::surface::normal;
 use crate::{Error, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use std::f64::consts::{SQRT_2, TAU};
 
 /// Fewest components whose slope has a density smooth enough for these sums.
 pub const FEWEST_COMPONENTS: u32 = 4;
 /// Every how many nodes of the table are used where a sum over all slopes is smooth, and where it has a kink.
 const COARSE: usize = 4;
 const FINE: usize = 2;
-/// Integrals reach to so many standard deviations of the facets' lobe, and of its product with the drawn slopes',
-const LOBE_END: f64 = 4.5;
-const PRODUCT_END: f64 = 5.0;
-/// in steps that resolve the density's frequencies together with the lobe's to so many over its standard deviation; where
-/// they are cut off, with so many of Gauss's nodes on so many steps.
-const LOBE_FREQUENCY: f64 = 4.5;
+/// Where integrals are cut off, so many of Gauss's nodes on so many steps.
 const NODES: usize = 24;
 const PANEL: f64 = 14.0;
 
@@ -134,10 +126,7 @@ impl Exact {
     /// What waves leave visible of the hits to an observer above them, on average.
     fn visible(&self, source: &Source, o: DVec3) -> f64 {
         let Some(slopes) = self.slopes.as_ref().filter(|_| self.obscuration) else { return 1.0 };
-        let lambda = |v: DVec3| {
-            let spread = SQRT_2 * slopes.spread(self.in_wind(v.truncate()));
-            hidden(v.z.max(1e-9), spread) / v.z.max(1e-9)
-        };
+        let lambda = |v: DVec3| slopes.hidden(self.in_wind(v.truncate()), v.z);
         let (i, o) = (lambda(source.direction), lambda(o));
         (1.0 + i) / (1.0 + i + o)
     }
@@ -182,15 +171,8 @@ impl Exact {
         let h = i + o;
         // The slope that mirrors the source to the observer, and how far facets let the wave's slope be from it.
         let specular = self.in_wind(-h.truncate() / h.z);
-        let lobe = facet_spread(&self.water.lobe.facets, specular);
-        // Were both Gaussian, their product would be one about here.
-        let (drawn, needed) = (1.0 / (slopes.sigma * slopes.sigma), 1.0 / (lobe * lobe));
-        let (middle, both) = (specular * needed / (drawn + needed), (drawn + needed).powf(-0.5));
-        let low = (middle - PRODUCT_END * both).min(specular - LOBE_END * lobe).max(-slopes.end());
-        let high = (middle + PRODUCT_END * both).max(specular + LOBE_END * lobe).min(slopes.end());
-        if low.x >= high.x || low.y >= high.y {
-            return;
-        }
+        let lobe = self.water.lobe.facets.spread(specular);
+        let Some((low, high)) = slopes.meeting(specular, lobe) else { return };
 
         // Along the view's azimuth slopes end where they turn away from the observer, or from a source in line.
         let along = if o.truncate().length() > 1e-6 { o.truncate() } else { i.truncate() };
@@ -209,7 +191,7 @@ impl Exact {
             if tip >= 0.0 { last = last.min(tip) } else { first = first.max(tip) }
         }
         let [left, right] = reach(f);
-        let step = TAU / (slopes.frequency + LOBE_FREQUENCY / lobe);
+        let step = slopes.step(lobe);
         if first >= last {
             return;
         }
@@ -281,12 +263,6 @@ struct Source {
 /// The area that a slope shows a direction, per level area: `max(0, N.v)/N_z`.
 fn shown(slope: DVec2, v: DVec3) -> f64 {
     (v.z - slope.dot(v.truncate())).max(0.0)
-}
-
-/// How far, in slope, facets reach about the slope that mirrors: a tilt's standard deviation in slopes there.
-fn facet_spread(facets: &Facets<f64>, specular: DVec2) -> DVec2 {
-    let widened = if facets.slope_measure { DVec2::ONE } else { DVec2::ONE + specular * specular };
-    DVec2::new(facets.sigma_u, facets.sigma_c) * widened
 }
 
 /// A distribution of values not below 0, the rest of the probability at 0.

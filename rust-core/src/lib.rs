@@ -34,6 +34,7 @@
 //! | [`scenario`] | 28: lasers, beams and observers |
 //! | [`ensemble`] | section 7: statistics over drawn surfaces |
 //! | [`exact`] | the same for infinitely many, without draws |
+//! | [`EnsembleLobe`] | the BRDF of a wavy sea seen from afar |
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
@@ -45,6 +46,7 @@ mod c_api;
 pub mod cast;
 mod characteristic;
 pub mod ensemble;
+mod ensemble_lobe;
 mod error;
 pub mod exact;
 pub mod optics;
@@ -66,6 +68,7 @@ pub mod wind;
 
 pub use brdf::Lobe;
 pub use ensemble::{Ensemble, Presence, Statistics};
+pub use ensemble_lobe::EnsembleLobe;
 pub use error::Error;
 pub use exact::Exact;
 pub use optics::Fresnel;

@@ -34,6 +34,8 @@ pub enum Surface {
     Flat,
     /// Drawn waves.
     Instance,
+    /// The mean over all drawn waves.
+    Ensemble,
 }
 
 /// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.

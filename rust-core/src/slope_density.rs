@@ -6,10 +6,11 @@
 //! crosswind; everything is even in both.
 
 use crate::characteristic::Component;
+use crate::shadowing::hidden;
 use crate::{Error, Water, whitecap};
 use glam::DVec2;
 use rayon::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Densities are tabulated to so many standard deviations, in steps of at most this many.
 const END: f64 = 8.5;
@@ -26,6 +27,11 @@ const RARE: f64 = 1e-5;
 const STILL: f64 = 1e-6;
 /// Most frequencies and most slopes on an axis: up to there tables take a fraction of a second.
 const MOST: [usize; 2] = [400, 1200];
+/// Integrals reach to so many standard deviations of the facets' lobe, and of its product with the drawn slopes', in
+/// steps that resolve the density's frequencies together with the lobe's to so many over its standard deviation.
+const LOBE_END: f64 = 4.5;
+const PRODUCT_END: f64 = 5.0;
+const LOBE_FREQUENCY: f64 = 4.5;
 /// Points for distributions.
 const POINTS: u32 = 8192;
 
@@ -101,6 +107,27 @@ impl Slopes {
     /// height.
     pub fn all_face(&self, horizontal: DVec2, height: f64) -> bool {
         height > END * self.spread(horizontal)
+    }
+
+    /// Smith's term (Eq. 66) for a direction, given by its horizontal part upwind and crosswind and its height.
+    pub fn hidden(&self, horizontal: DVec2, height: f64) -> f64 {
+        let height = height.max(1e-9);
+        hidden(height, SQRT_2 * self.spread(horizontal)) / height
+    }
+
+    /// The rectangle in which the drawn slopes and a lobe of facets, about a slope and so wide, meet.
+    pub fn meeting(&self, about: DVec2, lobe: DVec2) -> Option<(DVec2, DVec2)> {
+        // Were both Gaussian, their product would be one about here.
+        let (drawn, needed) = (1.0 / (self.sigma * self.sigma), 1.0 / (lobe * lobe));
+        let (middle, both) = (about * needed / (drawn + needed), (drawn + needed).powf(-0.5));
+        let low = (middle - PRODUCT_END * both).min(about - LOBE_END * lobe).max(-self.end());
+        let high = (middle + PRODUCT_END * both).max(about + LOBE_END * lobe).min(self.end());
+        (low.x < high.x && low.y < high.y).then_some((low, high))
+    }
+
+    /// Steps that resolve the density together with a lobe of facets.
+    pub fn step(&self, lobe: DVec2) -> DVec2 {
+        TAU / (self.frequency + LOBE_FREQUENCY / lobe)
     }
 
     /// Density and W at a slope upwind and crosswind.
@@ -339,7 +366,7 @@ impl SlopeTable {
 
 /// Lagrange's weights of the values at -1, 0, 1 and 2.
 #[inline]
-fn cubic(x: f64) -> [f64; 4] {
+pub(crate) fn cubic(x: f64) -> [f64; 4] {
     let (a, b, c, d) = (x + 1.0, x, x - 1.0, x - 2.0);
     [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0]
 }

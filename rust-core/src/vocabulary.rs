@@ -34,7 +34,12 @@ pub const ENTRIES: [Entry; 22] = [
         "inf",
         "footprint D: waves shorter than 2 D are facets; 0.15 unless surface is flat",
     ),
-    entry("surface", "", "flat", "which surface the facets lie on: flat, or instance, drawn waves"),
+    entry(
+        "surface",
+        "",
+        "flat",
+        "which surface the facets lie on: flat, instance (drawn waves) or ensemble (their mean)",
+    ),
     entry("components", "", "5", "the report's M: waves of a drawn surface, 1 to 65536"),
     entry("instances", "", "50", "the report's N: drawn surfaces of an ensemble"),
     entry("seed", "", "0", "chooses the random numbers of the drawn surfaces"),
@@ -112,7 +117,8 @@ fn flag(parameter: &'static str, value: &Value) -> Result<bool, Error> {
     }
 }
 
-const SURFACES: [(&str, Surface); 2] = [("flat", Surface::Flat), ("instance", Surface::Instance)];
+const SURFACES: [(&str, Surface); 3] =
+    [("flat", Surface::Flat), ("instance", Surface::Instance), ("ensemble", Surface::Ensemble)];
 /// Footprint of a surface with waves of its own, m, unless one is given.
 const WAVY_FOOTPRINT: f64 = 0.15;
 const WATERS: [(&str, Body); 2] = [("ocean", Body::Ocean), ("fresh", Body::Fresh)];
@@ -286,7 +292,7 @@ impl Builder {
         p.footprint = match (self.footprint, p.surface) {
             (Some(footprint), _) => footprint,
             (None, Surface::Flat) => f64::INFINITY,
-            (None, Surface::Instance) => WAVY_FOOTPRINT,
+            (None, Surface::Instance | Surface::Ensemble) => WAVY_FOOTPRINT,
         };
         if let Some(h) = self.wind_height {
             match &mut p.wind {

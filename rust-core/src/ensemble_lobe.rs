@@ -1,0 +1,193 @@
+//! The BRDF of a wavy sea seen from afar: the mean over the slopes of its drawn waves, as one lobe.
+//!
+//! A level surface that reflects as the waves do has
+//!
+//! `f = integral p f_N (N.i)+ (N.o)+/N_z ds / (i_z o_z (1 + L_i + L_o))`
+//!
+//! with the density `p` of the slope `s` of a drawn surface, the BRDF `f_N` of facets and whitecaps about its normal N,
+//! and Smith's terms L for what waves hide. It is reciprocal.
+//!
+//! Facets reflect by their density along the half vector H times shadowing: of the two only shadowing depends on the
+//! directions apart from H. So the integral is a table over H, of the density D of facets on all waves, times a mean of
+//! the shadowing over the waves that carry them. Those waves' slopes have a mean and a variance, tabulated with D; the
+//! mean of the shadowing is Gauss and Hermite's over five slopes in the plane of the two directions.
+
+use crate::characteristic::Component;
+use crate::quadrature::midpoints;
+use crate::slope_density::{Slopes, cubic};
+use crate::surface::normal;
+use crate::{Error, Water};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+/// The table reaches to so many standard deviations of all slopes, in steps of so many.
+const END: f64 = 6.0;
+const STEP: f64 = 1.0 / 6.0;
+/// Gauss and Hermite's rule: standard deviations and weights.
+const RULE: [(f64, f64); 5] = [
+    (0.0, 8.0 / 15.0),
+    (1.355_626_179_974_266, 0.222_075_922_005_612_6),
+    (-1.355_626_179_974_266, 0.222_075_922_005_612_6),
+    (2.856_970_013_872_806, 0.011_257_411_327_720_69),
+    (-2.856_970_013_872_806, 0.011_257_411_327_720_69),
+];
+
+/// A sea seen from afar, `surface = "ensemble"`.
+#[derive(Debug, Clone)]
+pub struct EnsembleLobe {
+    water: Water,
+    wind: DVec2,
+    /// `None`: no waves, the surface is level.
+    waves: Option<Waves>,
+}
+
+#[derive(Debug, Clone)]
+struct Waves {
+    slopes: Slopes,
+    /// Of the table over the half vector's slope, upwind and crosswind.
+    steps: DVec2,
+    /// Nodes to both sides of 0.
+    counts: [usize; 2],
+    /// Row by row.
+    cells: Vec<Cell>,
+    /// Mean of N_z under whitecaps, and of N_z times the squares of the slope.
+    foam: (f64, DVec2),
+}
+
+/// Facets along a half vector.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cell {
+    /// D: their density over 1/4 of Eq. 56, all waves together.
+    density: f64,
+    /// Of the slopes of the waves that carry them.
+    mean: DVec2,
+    variance: DVec2,
+}
+
+impl EnsembleLobe {
+    /// Tabulates a sea; refused as by [`crate::Exact::new`].
+    pub fn new(water: &Water) -> Result<Self, Error> {
+        let waves = water.waves();
+        let wind = DVec2::from_angle(waves.wind_azimuth);
+        let slopes = Component::new(&waves).map(|component| Slopes::new(&component, water)).transpose()?;
+        Ok(Self { water: *water, wind, waves: slopes.map(|slopes| Waves::new(slopes, water, wind)) })
+    }
+
+    /// f, 1/sr, for unit vectors to source and observer; 0 at or below the horizon.
+    pub fn eval(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        let (i, o) = (DVec3::from(i), DVec3::from(o));
+        if i.z <= 0.0 || o.z <= 0.0 {
+            return 0.0;
+        }
+        let lobe = &self.water.lobe;
+        let Some(waves) = &self.waves else {
+            let foam = self.water.whitecap_probability(0.0);
+            let facets = lobe.facets.eval(i.into(), o.into(), [0.0, 0.0, 1.0]);
+            return (1.0 - foam) * facets + foam * lobe.whitecap_brdf;
+        };
+        let half = i + o;
+        let cell = waves.at(self.in_wind(-half.truncate() / half.z));
+        let mut reflected = 0.0;
+        if cell.density > 0.0 {
+            // Either way round the rule meets the same slopes.
+            let across = (o - i).truncate().try_normalize().unwrap_or(DVec2::X);
+            let along = self.in_wind(across);
+            let spread = (along * along).dot(cell.variance).max(0.0).sqrt();
+            let shadowing = |(x, weight): &(f64, f64)| {
+                let slope = self.in_world(cell.mean + along * spread * *x);
+                weight * lobe.facets.shadowed_reflectance(i.into(), o.into(), normal(slope.into()))
+            };
+            reflected = cell.density * RULE.iter().map(shadowing).sum::<f64>();
+        }
+        let (level, tilted) = waves.foam;
+        let [i_wind, o_wind] = [i, o].map(|v| self.in_wind(v.truncate()));
+        reflected += lobe.whitecap_brdf * (level * i.z * o.z + (tilted * i_wind).dot(o_wind)).max(0.0);
+        let hidden = waves.slopes.hidden(i_wind, i.z) + waves.slopes.hidden(o_wind, o.z);
+        reflected / (i.z * o.z * (1.0 + hidden))
+    }
+
+    fn in_wind(&self, v: DVec2) -> DVec2 {
+        DVec2::new(v.dot(self.wind), v.dot(self.wind.perp()))
+    }
+
+    fn in_world(&self, v: DVec2) -> DVec2 {
+        v.x * self.wind + v.y * self.wind.perp()
+    }
+}
+
+impl Waves {
+    fn new(slopes: Slopes, water: &Water, wind: DVec2) -> Self {
+        let facets = DVec2::from(water.variances.map(f64::sqrt));
+        let steps = STEP * (facets * facets + slopes.sigma * slopes.sigma).powf(0.5);
+        let count = (END / STEP) as usize;
+        let rows = 2 * count + 1;
+        let cells = (0..rows * rows)
+            .into_par_iter()
+            .map(|n| {
+                let node = DVec2::new((n / rows) as f64 - count as f64, (n % rows) as f64 - count as f64);
+                Cell::new(&slopes, water, wind, node * steps)
+            })
+            .collect();
+        let mut foam = (0.0, DVec2::ZERO);
+        for point in slopes.capped.iter().flat_map(|_| slopes.points()) {
+            let share = point.capped / (1.0 + point.slope.length_squared()).sqrt();
+            foam.0 += share;
+            foam.1 += share * point.slope * point.slope;
+        }
+        Self { slopes, steps, counts: [count; 2], cells, foam }
+    }
+
+    /// Facets along a half vector of a slope upwind and crosswind; none beyond the table.
+    fn at(&self, slope: DVec2) -> Cell {
+        let place = slope / self.steps + DVec2::new(self.counts[0] as f64, self.counts[1] as f64);
+        let [rows, columns] = self.counts.map(|count| 2 * count + 1);
+        let (x, y) = (place.x.floor(), place.y.floor());
+        if !(x >= 1.0 && y >= 1.0 && x < (rows - 2) as f64 && y < (columns - 2) as f64) {
+            return Cell::default();
+        }
+        let (along, across) = (cubic(place.x - x), cubic(place.y - y));
+        let mut cell = Cell::default();
+        for (i, wx) in along.iter().enumerate() {
+            let row = (x as usize + i - 1) * columns + y as usize - 1;
+            for (node, wy) in self.cells[row..row + 4].iter().zip(across) {
+                let weight = wx * wy;
+                cell.density += weight * node.density;
+                cell.mean += weight * node.mean;
+                cell.variance += weight * node.variance;
+            }
+        }
+        cell.density = cell.density.max(0.0);
+        cell
+    }
+}
+
+impl Cell {
+    /// For a half vector of a slope upwind and crosswind.
+    fn new(slopes: &Slopes, water: &Water, wind: DVec2, half: DVec2) -> Self {
+        let facets = &water.lobe.facets;
+        let in_world = |v: DVec2| normal((v.x * wind + v.y * wind.perp()).into());
+        let lobe = facets.spread(half);
+        let mut cell = Self::default();
+        let Some((low, high)) = slopes.meeting(half, lobe) else { return cell };
+        let step = slopes.step(lobe);
+        for (x, width) in midpoints(low.x, high.x, step.x) {
+            for (y, height) in midpoints(low.y, high.y, step.y) {
+                let slope = DVec2::new(x, y);
+                let (density, capped) = slopes.at(slope);
+                let n = in_world(slope);
+                let share =
+                    (density - capped) * width * height * facets.density_along(in_world(half), n) / n[2];
+                cell.density += share;
+                cell.mean += share * slope;
+                cell.variance += share * slope * slope;
+            }
+        }
+        if cell.density > 0.0 {
+            cell.mean /= cell.density;
+            cell.variance = (cell.variance / cell.density - cell.mean * cell.mean).max(DVec2::ZERO);
+        } else {
+            cell = Self::default();
+        }
+        cell
+    }
+}
