@@ -6,8 +6,8 @@ use crate::table::{self, Cell, Table};
 use crate::{Outcome, parameters};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use csv::ByteRecord;
-use prob_water::Error;
 use prob_water::batch::Rows;
+use prob_water::{EnsembleLobe, Error, Surface};
 use std::path::PathBuf;
 
 /// The subcommand's flags.
@@ -26,19 +26,28 @@ pub fn command() -> Command {
                 ),
         )
         .args(table::flags())
-        .args(parameters::flags("flat"))
+        .args(parameters::flags(Surface::Flat))
 }
 
 /// Checks every row, then writes them all with their `f`.
 pub fn run(matches: &ArgMatches) -> Outcome {
-    let water = parameters::water_on("flat", matches)?;
+    let water = parameters::water_on(&[Surface::Flat, Surface::Ensemble], matches)?;
     let input = input::read(matches.get_one::<PathBuf>("input").expect("has a default"))?;
     let half = input.len() as u64;
     let progress = Progress::new(2 * half, table::to_file(matches));
 
     let directions = Directions::parse(&input, |byte| progress.at(byte))?;
     let mut f = vec![0.0; directions.vectors[0].len()];
-    directions.rows().and_then(|rows| rows.eval(&water.lobe, &mut f))?;
+    let rows = directions.rows()?;
+    if water.parameters.surface == Surface::Ensemble {
+        if directions.with_normals() {
+            return Err("normals have no meaning with surface = ensemble".to_owned().into());
+        }
+        let lobe = EnsembleLobe::new(&water)?;
+        rows.each(&mut f, |i, o, _| lobe.eval(i, o))?;
+    } else {
+        rows.eval(&water.lobe, &mut f)?;
+    }
 
     let columns = directions.columns.iter().map(|c| COLUMNS.known[*c]).chain(["f"]);
     let mut out = Table::new(matches, columns)?;
@@ -84,10 +93,14 @@ impl Directions {
         Ok(Self { columns, vectors })
     }
 
+    fn with_normals(&self) -> bool {
+        self.columns.len() == COLUMNS.known.len()
+    }
+
     /// All rows, checked; what is refused is named by the file's columns.
     fn rows(&self) -> Result<Rows<'_, f64>, Error> {
         let [source, observer, normals] = &self.vectors;
-        let normals = (self.columns.len() == COLUMNS.known.len()).then_some(normals.as_slice());
+        let normals = self.with_normals().then_some(normals.as_slice());
         Rows::new(source, observer, normals).map_err(|error| match error {
             Error::Row { row, column, x, y, z, expected } => {
                 let column = match column {

@@ -2,11 +2,11 @@
 
 use clap::{Arg, ArgMatches};
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
-use prob_water::{Parameters, Water};
+use prob_water::{Surface, Water};
 
 /// One flag per parameter: its name with dashes, its unit and its default on a surface.
-pub fn flags(surface: &str) -> impl Iterator<Item = Arg> {
-    let defaults = on(surface).parameters().expect("defaults");
+pub fn flags(surface: Surface) -> impl Iterator<Item = Arg> {
+    let defaults = Builder::on(surface).parameters().expect("defaults");
     ENTRIES.iter().map(move |entry| {
         let default = defaults.get(entry.name).map(|value| format!(" [default: {value}]"));
         Arg::new(entry.name)
@@ -33,28 +33,10 @@ pub fn water(matches: &ArgMatches) -> Result<Water, String> {
     build(Builder::default(), matches).map_err(|e| e.to_string())
 }
 
-/// The same, on the one surface that a subcommand knows.
-pub fn water_on(surface: &str, matches: &ArgMatches) -> Result<Water, String> {
-    let water = build(on(surface), matches).map_err(|e| e.to_string())?;
-    require(surface, &water.parameters)?;
-    Ok(water)
-}
-
-/// A builder whose surface is this one, unless another is asked for.
-pub fn on(surface: &str) -> Builder {
-    let mut builder = Builder::default();
-    builder.set("surface", &Value::Text(surface.into())).expect("a known surface");
-    builder
-}
-
-/// Refuses every surface but one.
-pub fn require(surface: &str, parameters: &Parameters) -> Result<(), String> {
-    match parameters.get("surface") {
-        Some(Value::Text(found)) if found != surface => {
-            Err(format!("surface = {found} is unknown here: allowed is {surface}"))
-        }
-        _ => Ok(()),
-    }
+/// The same, on one of the surfaces that a subcommand knows: the first unless told.
+pub fn water_on(surfaces: &[Surface], matches: &ArgMatches) -> Result<Water, String> {
+    let water = build(Builder::on(surfaces[0]), matches).and_then(|water| water.on(surfaces));
+    water.map_err(|e| e.to_string())
 }
 
 fn build(mut builder: Builder, matches: &ArgMatches) -> Result<Water, prob_water::Error> {

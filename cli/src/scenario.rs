@@ -10,8 +10,8 @@ use crate::progress::Progress;
 use crate::{Outcome, parameters, table};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use file::{Method, Scenario};
-use prob_water::Ensemble;
 use prob_water::exact::Exact;
+use prob_water::{Ensemble, Surface};
 use std::path::PathBuf;
 use tables::Tables;
 
@@ -37,7 +37,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(u16).range(1..=1024))
                 .help("threads, 1 to 1024; results do not depend on it [default: one for every core]"),
         )
-        .args(parameters::flags("instance"))
+        .args(parameters::flags(Surface::Instance))
 }
 
 /// Checks the whole file, then writes a row for every engagement and observer.

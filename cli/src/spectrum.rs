@@ -3,6 +3,7 @@
 use crate::table::{self, Cell, Table};
 use crate::{Outcome, parameters};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use prob_water::Surface;
 use prob_water::spectrum::Spectrum;
 use std::f64::consts::TAU;
 
@@ -29,7 +30,7 @@ pub fn command() -> Command {
                 .help("these wave numbers instead, above 0, separated by commas"),
         )
         .args(table::flags())
-        .args(parameters::flags("instance"))
+        .args(parameters::flags(Surface::Instance))
 }
 
 fn wave_number(text: &str) -> Result<f64, String> {
@@ -51,7 +52,7 @@ const COLUMNS: [&str; 9] = [
 
 /// One row for every wave number.
 pub fn run(matches: &ArgMatches) -> Outcome {
-    let water = parameters::water_on("instance", matches)?;
+    let water = parameters::water_on(&[Surface::Instance], matches)?;
     let spectrum = water.waves().spectrum;
     let wave_numbers: Vec<f64> = match matches.get_many("wave_number") {
         Some(given) => given.copied().collect(),

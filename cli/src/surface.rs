@@ -7,7 +7,7 @@ use crate::{Outcome, parameters};
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use prob_water::scenario::{FARTHEST, LONGEST_TIME};
 use prob_water::waves::Component;
-use prob_water::{Ensemble, Error, RealisedSurface};
+use prob_water::{Ensemble, Error, RealisedSurface, Surface};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -52,7 +52,7 @@ pub fn command() -> Command {
                 .help("which of the seas that the seed draws"),
         )
         .args(table::flags())
-        .args(parameters::flags("instance"))
+        .args(parameters::flags(Surface::Instance))
 }
 
 /// Points of a grid, row by row along x.
@@ -82,7 +82,7 @@ fn grid(text: &str) -> Result<Grid, String> {
 /// Writes the points asked for, the waves or the bounds.
 pub fn run(matches: &ArgMatches) -> Outcome {
     let sea = Sea {
-        all: Ensemble::new(&parameters::water_on("instance", matches)?),
+        all: Ensemble::new(&parameters::water_on(&[Surface::Instance], matches)?),
         instance: *matches.get_one("instance").expect("has a default"),
     };
     if let Some(Grid { size: [nx, ny], step }) = matches.get_one("grid") {

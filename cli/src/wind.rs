@@ -3,6 +3,7 @@
 use crate::table::{self, Cell, Table};
 use crate::{Outcome, parameters};
 use clap::{Arg, ArgAction, ArgMatches, Command};
+use prob_water::Surface;
 use prob_water::wind::{TABLE_1, friction_velocity};
 
 /// The subcommand's flags.
@@ -17,7 +18,7 @@ pub fn command() -> Command {
                 .help("write the report's Table 1 instead: solved and printed friction velocities"),
         )
         .args(table::flags())
-        .args(parameters::flags("flat"))
+        .args(parameters::flags(Surface::Flat))
 }
 
 /// One row for the given parameters, or all of Table 1.

@@ -81,7 +81,7 @@ impl Options {
     }
 
     fn configure(&self) -> Result<Box<Water>, Error> {
-        let water = self.0.parameters()?.configure()?.on(Surface::Flat)?;
+        let water = self.0.parameters()?.configure()?.on(&[Surface::Flat])?;
         Ok(Box::new(Water { water, lobe: water.lobe.cast() }))
     }
 }

@@ -216,7 +216,7 @@ pub unsafe extern "C" fn prob_water_configure(
         // SAFETY: by this function's contract.
         let sea = unsafe { sea.as_mut() }.ok_or_else(|| null("sea"))?;
         let configured = options.builder.parameters().and_then(|p| p.configure());
-        let water = configured.and_then(|water| water.on(Surface::Flat)).map_err(refused)?;
+        let water = configured.and_then(|water| water.on(&[Surface::Flat])).map_err(refused)?;
         *sea = Box::into_raw(Box::new(ProbWater { water, single: water.lobe.cast() }));
         Ok(())
     })

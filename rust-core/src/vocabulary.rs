@@ -178,15 +178,18 @@ impl Parameters {
 }
 
 impl Water {
-    /// The same, if its surface is the one that the caller knows.
-    pub fn on(self, surface: Surface) -> Result<Self, Error> {
+    /// The same, if its surface is one of those that the caller knows.
+    pub fn on(self, surfaces: &[Surface]) -> Result<Self, Error> {
         let name =
             |surface: &Surface| word(surface, &SURFACES).map_or(String::new(), |name| name.to_string());
-        if self.parameters.surface == surface {
+        if surfaces.contains(&self.parameters.surface) {
             return Ok(self);
         }
-        let value = name(&self.parameters.surface);
-        Err(Error::UnknownChoice { parameter: "surface", value, allowed: name(&surface) })
+        Err(Error::UnknownChoice {
+            parameter: "surface",
+            value: name(&self.parameters.surface),
+            allowed: surfaces.iter().map(name).collect::<Vec<_>>().join(", "),
+        })
     }
 }
 
@@ -228,6 +231,11 @@ fn conflict(
 }
 
 impl Builder {
+    /// With another surface than the flat one, unless it is told.
+    pub fn on(surface: Surface) -> Self {
+        Self { parameters: Parameters { surface, ..Parameters::default() }, ..Self::default() }
+    }
+
     /// Sets one parameter by its name.
     pub fn set(&mut self, name: &str, value: &Value) -> Result<(), Error> {
         let Some(entry) = ENTRIES.iter().find(|e| e.name == name) else {
@@ -415,9 +423,9 @@ mod tests {
         builder.set("footprint", &Value::Text("inf".into())).unwrap();
         let water = builder.parameters().unwrap().configure().unwrap();
         assert_eq!(water.parameters.footprint, f64::INFINITY);
-        let refused = water.on(Surface::Flat).unwrap_err().to_string();
-        assert_eq!(refused, "surface = instance is unknown: allowed is flat");
-        assert!(water.on(Surface::Instance).is_ok());
+        let refused = water.on(&[Surface::Flat, Surface::Ensemble]).unwrap_err().to_string();
+        assert_eq!(refused, "surface = instance is unknown: allowed is flat, ensemble");
+        assert!(water.on(&[Surface::Instance]).is_ok());
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! `[model]`: parameters by the vocabulary's names.
 
 use super::settings;
-use crate::parameters;
 use crate::toml_file::{Document, Item};
-use prob_water::vocabulary::{Value, WIND};
-use prob_water::{Error, Water};
+use prob_water::vocabulary::{Builder, Value, WIND};
+use prob_water::{Error, Surface, Water};
 
 /// A parameter given as a flag.
 pub type Flag = (&'static str, Value);
@@ -27,7 +26,7 @@ fn replaces(flag: &str, name: &str) -> bool {
 impl Model<'_> {
     /// The sea, its waves drawn; flags stand above the file.
     pub fn water(&self, flags: &[Flag]) -> Result<Water, String> {
-        let mut builder = parameters::on("instance");
+        let mut builder = Builder::on(Surface::Instance);
         for item in &self.items {
             if !flags.iter().any(|(flag, _)| replaces(flag, item.name)) {
                 builder.set(item.name, &item.value()?).map_err(|e| match e {
@@ -42,11 +41,8 @@ impl Model<'_> {
         for (name, value) in flags {
             builder.set(name, value).map_err(|e| e.to_string())?;
         }
-        let water =
-            builder.parameters().and_then(|p| p.configure()).map_err(|e| self.refuse(flags, &e, None))?;
-        parameters::require("instance", &water.parameters)
-            .map_err(|message| self.refuse_named(flags, &["surface"], &message, None))?;
-        Ok(water)
+        let water = builder.parameters().and_then(|p| p.configure());
+        water.and_then(|water| water.on(&[Surface::Instance])).map_err(|e| self.refuse(flags, &e, None))
     }
 
     /// A refusal at the key that is to blame, or at `place`, or at the table.

@@ -1,4 +1,4 @@
-use crate::{close, float, succeed, table, vectors};
+use crate::{close, float, refuse, succeed, table, vectors};
 use serde_json::Value;
 
 #[test]
@@ -69,4 +69,24 @@ fn json_holds_the_same_numbers() {
             assert_eq!(value.as_f64().unwrap(), float(text));
         }
     }
+}
+
+/// `surface = ensemble`: the library's numbers, footprint 0.15 unless told, reciprocal; normals are refused.
+#[test]
+fn the_sea_from_afar() {
+    let rows =
+        "ix,iy,iz,ox,oy,oz\n0.6,0,0.8,-0.48,0.36,0.8\n-0.48,0.36,0.8,0.6,0,0.8\n0,0,1,0,0,1\n0,0,1,0,1,0\n";
+    let text = succeed("brdf --surface ensemble --friction-velocity 24", rows);
+    let found: Vec<f64> = table(&text)[1..].iter().map(|row| float(row[6])).collect();
+    let water = prob_water::Parameters {
+        wind: prob_water::Wind::FrictionVelocity(24.0),
+        surface: prob_water::Surface::Ensemble,
+        footprint: 0.15,
+        ..Default::default()
+    };
+    let lobe = prob_water::EnsembleLobe::new(&water.configure().unwrap()).unwrap();
+    close(table(&text)[1][6], &lobe.eval([0.6, 0.0, 0.8], [-0.48, 0.36, 0.8]).to_string());
+    assert!((found[0] / found[1] - 1.0).abs() < 1e-11 && found[2] > 0.03 && found[3] == 0.0, "{found:?}");
+    let with_normals = "ix,iy,iz,ox,oy,oz,nx,ny,nz\n0,0,1,0,0,1,0,0,1\n";
+    assert!(refuse("brdf --surface ensemble", with_normals).contains("normals"));
 }
