@@ -235,6 +235,8 @@ template <typename Float_> struct Lobe {
     }
 
 private:
+    template <typename> friend struct Afar;
+
     /// What the source fixes of the facets' proposal: its horizontal components, components of z that make rD,
     /// 1/cos theta_i, 1/D, D phi(1/D).
     struct Proposal {

@@ -7,7 +7,7 @@
 #include "prob-water-mitsuba/src/lib.rs.h"
 #include "rust/cxx.h"
 
-#include "lobe.h"
+#include "afar.h"
 
 // The hot path of the scalar variants: the Rust core, called as plain C.
 extern "C" {
@@ -62,16 +62,19 @@ Wind-roughened water (:monosp:`prob_water`)
 
  * - footprint
    - |float|
-   - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves. (Default: inf)
+   - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves. (Default: inf, or 0.15
+     where the surface is not flat)
    - |exposed|
 
  * - surface
    - |string|
-   - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives. (Default: flat)
+   - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives, or :monosp:`ensemble`, all
+     waves longer than two footprints that the wind may raise, on average: the sea from afar. (Default: flat)
 
  * - components, instances, seed, time, depth, fetch
    - |float|
-   - The vocabulary's words for drawn waves: checked, but a flat surface has none.
+   - The vocabulary's words for drawn waves: components, depth and fetch matter to the ensemble; else they are
+     checked and have no effect.
 
  * - wavelength
    - |float|
@@ -133,6 +136,7 @@ public:
     MI_IMPORT_TYPES()
 
     using Lobe = prob_water::Lobe<Float>;
+    using Afar = prob_water::Afar<Float>;
     using Parts = prob_water::Parts;
 
     ProbWater(const Properties &props)
@@ -184,7 +188,7 @@ public:
             auto g = m_lobe.template geometry<Float>(si.wi, bs.wo);
             bs.pdf = m_lobe.pdf(g, si.wi, parts);
             active &= bs.pdf > 0.f;
-            weight = m_lobe.eval(g, si.wi, bs.wo, parts) / bs.pdf;
+            weight = (m_afar.rows ? m_afar.eval(m_lobe, si.wi, bs.wo, parts) : m_lobe.eval(g, si.wi, bs.wo, parts)) / bs.pdf;
         } else {
             float u[3] = { sample1, sample2.x(), sample2.y() };
             ProbWaterSample s{};
@@ -308,6 +312,8 @@ private:
         prob_water::Coefficients c = m_water->coefficients();
         m_whitecaps = c.whitecap_fraction > 0.f;
         m_lobe = Lobe(c);
+        if constexpr (dr::is_jit_v<Float>)
+            m_afar = Afar(m_water->waves());
 
         m_components.clear();
         m_components.push_back(BSDFFlags::GlossyReflection | BSDFFlags::Anisotropic | BSDFFlags::FrontSide);
@@ -323,10 +329,11 @@ private:
         auto run = [&](auto type) {
             using T = decltype(type);
             auto g = m_lobe.template geometry<T>(wi, wo);
-            return std::pair<Float, Float>(m_lobe.template eval<T>(g, wi, wo, parts),
+            return std::pair<Float, Float>(m_afar.rows ? m_afar.eval(m_lobe, wi, wo, parts)
+                                                       : m_lobe.template eval<T>(g, wi, wo, parts),
                                            with_pdf ? m_lobe.pdf(g, wi, parts) : Float(0.f));
         };
-        return m_lobe.gram_charlier ? run(typename Lobe::Wide()) : run(Float());
+        return m_lobe.gram_charlier && !m_afar.rows ? run(typename Lobe::Wide()) : run(Float());
     }
 
     Parts enabled(const BSDFContext &ctx) const {
@@ -339,8 +346,9 @@ private:
     std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
     bool m_whitecaps = false;
     Lobe m_lobe;
+    Afar m_afar;
 
-    MI_TRAVERSE_CB(Base, m_lobe)
+    MI_TRAVERSE_CB(Base, m_lobe, m_afar)
 };
 
 extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn fn) {

@@ -3,7 +3,7 @@
 use prob_water::brdf::{Parts, up};
 use prob_water::real::IERFC;
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
-use prob_water::{Error, Lobe, Sample, Surface};
+use prob_water::{EnsembleLobe, Error, Lobe, Sample, Surface};
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
@@ -35,6 +35,15 @@ mod ffi {
         ierfc: [f32; 7],
     }
 
+    /// What `prob_water::ensemble_lobe::Table` holds, for `surface = "ensemble"`; no rows where the sea is level.
+    struct Waves {
+        rows: u32,
+        steps: [f32; 2],
+        cells: Vec<f32>,
+        sigma: [f32; 2],
+        foam: [f32; 3],
+    }
+
     extern "Rust" {
         /// Parameters being collected.
         type Options;
@@ -49,6 +58,7 @@ mod ffi {
         /// A configured sea.
         type Water;
         fn coefficients(self: &Water) -> Coefficients;
+        fn waves(self: &Water) -> Waves;
         /// Value of a numeric parameter in force, by name; NaN for one that is not set.
         fn number(self: &Water, name: &str) -> f64;
         /// `name = value` lines of the parameters and of what follows from them.
@@ -81,15 +91,23 @@ impl Options {
     }
 
     fn configure(&self) -> Result<Box<Water>, Error> {
-        let water = self.0.parameters()?.configure()?.on(&[Surface::Flat])?;
-        Ok(Box::new(Water { water, lobe: water.lobe.cast() }))
+        let water = self.0.parameters()?.configure()?.on(&[Surface::Flat, Surface::Ensemble])?;
+        let afar = match water.parameters.surface {
+            Surface::Ensemble => Some(EnsembleLobe::new(&water)?),
+            _ => None,
+        };
+        let lobe = afar.as_ref().map_or(water.lobe, |afar| afar.sampler).cast();
+        Ok(Box::new(Water { water, lobe, afar }))
     }
 }
 
-/// A configured sea, with the lobe in Mitsuba's float32.
+/// A configured sea.
 pub struct Water {
     water: prob_water::Water,
+    /// In Mitsuba's float32: the flat sea's, or what draws directions for the sea from afar.
     lobe: Lobe<f32>,
+    /// `surface = "ensemble"`.
+    afar: Option<EnsembleLobe>,
 }
 
 impl Water {
@@ -122,6 +140,28 @@ impl Water {
         }
     }
 
+    fn waves(&self) -> ffi::Waves {
+        let single = |x: f64| x as f32;
+        match self.afar.as_ref().and_then(EnsembleLobe::table) {
+            Some(t) => ffi::Waves {
+                rows: t.rows,
+                steps: t.steps.map(single),
+                cells: t.cells,
+                sigma: t.sigma.map(single),
+                foam: t.foam.map(single),
+            },
+            None => ffi::Waves { rows: 0, steps: [0.0; 2], cells: vec![], sigma: [0.0; 2], foam: [0.0; 3] },
+        }
+    }
+
+    /// f of some of its parts, 1/sr.
+    fn eval(&self, i: [f32; 3], o: [f32; 3], parts: Parts) -> f32 {
+        match &self.afar {
+            Some(afar) => afar.eval_parts(i.map(f64::from), o.map(f64::from), parts) as f32,
+            None => self.lobe.eval_parts(i, o, up(), parts),
+        }
+    }
+
     fn number(&self, name: &str) -> f64 {
         match self.water.parameters.get(name) {
             Some(Value::Number(x)) => x,
@@ -141,7 +181,7 @@ fn parts(bits: u32) -> Parts {
 /// f cos(theta_o) of the parts in `bits` (1 facets, 2 whitecaps), about the normal (0, 0, 1).
 #[unsafe(no_mangle)]
 pub extern "C" fn prob_water_bsdf_eval(water: &Water, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
-    water.lobe.eval_parts(*i, *o, up(), parts(bits)) * o[2].max(0.0)
+    water.eval(*i, *o, parts(bits)) * o[2].max(0.0)
 }
 
 /// Density, 1/sr, with which [`prob_water_bsdf_sample`] draws `o`.
@@ -160,4 +200,7 @@ pub extern "C" fn prob_water_bsdf_sample(
     sample: &mut Sample<f32>,
 ) {
     *sample = water.lobe.sample_parts(*i, up(), *u, parts(bits));
+    if water.afar.is_some() {
+        sample.f = water.eval(*i, sample.direction, parts(bits));
+    }
 }

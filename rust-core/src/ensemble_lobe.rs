@@ -12,11 +12,12 @@
 //! the shadowing over the waves that carry them. Those waves' slopes have a mean and a variance, tabulated with D; the
 //! mean of the shadowing is Gauss and Hermite's over five slopes in the plane of the two directions.
 
+use crate::brdf::{Parts, up};
 use crate::characteristic::Component;
 use crate::quadrature::midpoints;
 use crate::slope_density::{Slopes, cubic};
 use crate::surface::normal;
-use crate::{Error, Water};
+use crate::{Error, Lobe, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -36,9 +37,27 @@ const RULE: [(f64, f64); 5] = [
 #[derive(Debug, Clone)]
 pub struct EnsembleLobe {
     water: Water,
+    /// Draws directions, and knows their density: the facets' own proposal, widened by the waves' slopes, and whitecaps
+    /// in proportion to what they cover. Its `eval` is not this lobe's.
+    pub sampler: Lobe<f64>,
     wind: DVec2,
     /// `None`: no waves, the surface is level.
     waves: Option<Waves>,
+}
+
+/// The table as traced code reads it, with linear interpolation.
+#[derive(Debug, Clone)]
+pub struct Table {
+    /// Nodes on a side, the half vector's slope 0 in the middle.
+    pub rows: u32,
+    /// Between nodes, upwind and crosswind.
+    pub steps: [f64; 2],
+    /// Row by row (upwind) of every node: D, means and variances of the slopes upwind and crosswind, and zeros up to eight.
+    pub cells: Vec<f32>,
+    /// Standard deviations of the drawn slopes, upwind and crosswind.
+    pub sigma: [f64; 2],
+    /// Mean of N_z under whitecaps, and of N_z times the squares of the slope.
+    pub foam: [f64; 3],
 }
 
 #[derive(Debug, Clone)]
@@ -70,25 +89,37 @@ impl EnsembleLobe {
         let waves = water.waves();
         let wind = DVec2::from_angle(waves.wind_azimuth);
         let slopes = Component::new(&waves).map(|component| Slopes::new(&component, water)).transpose()?;
-        Ok(Self { water: *water, wind, waves: slopes.map(|slopes| Waves::new(slopes, water, wind)) })
+        let waves = slopes.map(|slopes| Waves::new(slopes, water, wind));
+        let mut sampler = water.lobe;
+        sampler.whitecap_fraction = water.whitecap_probability(0.0);
+        if let Some(waves) = &waves {
+            let f = &mut sampler.facets;
+            f.proposal_u = f.proposal_u.hypot(waves.slopes.sigma.x);
+            f.proposal_c = f.proposal_c.hypot(waves.slopes.sigma.y);
+            sampler.whitecap_fraction = waves.foam.0;
+        }
+        Ok(Self { water: *water, sampler, wind, waves })
     }
 
     /// f, 1/sr, for unit vectors to source and observer; 0 at or below the horizon.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        self.eval_parts(i, o, Parts::ALL)
+    }
+
+    /// f of some of its parts, 1/sr.
+    pub fn eval_parts(&self, i: [f64; 3], o: [f64; 3], parts: Parts) -> f64 {
         let (i, o) = (DVec3::from(i), DVec3::from(o));
         if i.z <= 0.0 || o.z <= 0.0 {
             return 0.0;
         }
         let lobe = &self.water.lobe;
         let Some(waves) = &self.waves else {
-            let foam = self.water.whitecap_probability(0.0);
-            let facets = lobe.facets.eval(i.into(), o.into(), [0.0, 0.0, 1.0]);
-            return (1.0 - foam) * facets + foam * lobe.whitecap_brdf;
+            return self.sampler.eval_parts(i.into(), o.into(), up(), parts);
         };
         let half = i + o;
         let cell = waves.at(self.in_wind(-half.truncate() / half.z));
         let mut reflected = 0.0;
-        if cell.density > 0.0 {
+        if parts.facets && cell.density > 0.0 {
             // Either way round the rule meets the same slopes.
             let across = (o - i).truncate().try_normalize().unwrap_or(DVec2::X);
             let along = self.in_wind(across);
@@ -101,9 +132,34 @@ impl EnsembleLobe {
         }
         let (level, tilted) = waves.foam;
         let [i_wind, o_wind] = [i, o].map(|v| self.in_wind(v.truncate()));
-        reflected += lobe.whitecap_brdf * (level * i.z * o.z + (tilted * i_wind).dot(o_wind)).max(0.0);
+        if parts.whitecaps {
+            reflected += lobe.whitecap_brdf * (level * i.z * o.z + (tilted * i_wind).dot(o_wind)).max(0.0);
+        }
         let hidden = waves.slopes.hidden(i_wind, i.z) + waves.slopes.hidden(o_wind, o.z);
         reflected / (i.z * o.z * (1.0 + hidden))
+    }
+
+    /// For traced code; `None` where there are no waves and [`EnsembleLobe::sampler`] is all there is.
+    pub fn table(&self) -> Option<Table> {
+        // So fine that linear interpolation errs by 2e-4.
+        const FINER: usize = 4;
+        let waves = self.waves.as_ref()?;
+        let rows = 2 * FINER * waves.counts[0] + 1;
+        let steps = waves.steps / FINER as f64;
+        let middle = (FINER * waves.counts[0]) as f64;
+        let cells = (0..rows * rows).into_par_iter().flat_map_iter(|n| {
+            let place = DVec2::new((n / rows) as f64 - middle, (n % rows) as f64 - middle);
+            let Cell { density, mean, variance } = waves.at(place * steps);
+            [density, mean.x, mean.y, variance.x, variance.y, 0.0, 0.0, 0.0].map(|x| x as f32)
+        });
+        let (level, tilted) = waves.foam;
+        Some(Table {
+            rows: rows as u32,
+            steps: steps.into(),
+            cells: cells.collect(),
+            sigma: waves.slopes.sigma.into(),
+            foam: [level, tilted.x, tilted.y],
+        })
     }
 
     fn in_wind(&self, v: DVec2) -> DVec2 {

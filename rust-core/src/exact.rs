@@ -21,8 +21,6 @@ use crate::{Error, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Fewest components whose slope has a density smooth enough for these sums.
-pub const FEWEST_COMPONENTS: u32 = 4;
 /// Every how many nodes of the table are used where a sum over all slopes is smooth, and where it has a kink.
 const COARSE: usize = 4;
 const FINE: usize = 2;
@@ -54,18 +52,11 @@ pub struct Means {
 }
 
 impl Exact {
-    /// The density of the sea's slopes. Refused: fewer components than [`FEWEST_COMPONENTS`], and footprints whose facets
+    /// The density of the sea's slopes. Refused: fewer components than 4, and footprints whose facets
     /// are finer than the drawn slopes by orders of magnitude.
     pub fn new(water: &Water) -> Result<Self, Error> {
         let waves = water.waves();
         let component = Component::new(&waves);
-        if component.is_some() && water.parameters.components < FEWEST_COMPONENTS {
-            return Err(Error::OutOfRange {
-                parameter: "components",
-                value: water.parameters.components.to_string(),
-                allowed: format!("at least {FEWEST_COMPONENTS} for exact statistics"),
-            });
-        }
         Ok(Self {
             water: *water,
             wind: DVec2::from_angle(waves.wind_azimuth),

@@ -46,7 +46,7 @@ mod c_api;
 pub mod cast;
 mod characteristic;
 pub mod ensemble;
-mod ensemble_lobe;
+pub mod ensemble_lobe;
 mod error;
 pub mod exact;
 pub mod optics;

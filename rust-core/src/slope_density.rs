@@ -12,6 +12,8 @@ use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::{PI, SQRT_2, TAU};
 
+/// Fewest components whose slope has a density smooth enough for a table.
+const FEWEST_COMPONENTS: u32 = 4;
 /// Densities are tabulated to so many standard deviations, in steps of at most this many.
 const END: f64 = 8.5;
 const STEP: f64 = 0.125;
@@ -49,8 +51,16 @@ pub(crate) struct Slopes {
 }
 
 impl Slopes {
-    /// The slopes of a sea's waves; refused where the facets are so much finer that tables would be huge.
+    /// The slopes of a sea's waves; refused where they are too few, and where the facets are so much finer that tables
+    /// would be huge.
     pub fn new(component: &Component, water: &Water) -> Result<Self, Error> {
+        if water.parameters.components < FEWEST_COMPONENTS {
+            return Err(Error::OutOfRange {
+                parameter: "components",
+                value: water.parameters.components.to_string(),
+                allowed: format!("at least {FEWEST_COMPONENTS} for the density of their slopes"),
+            });
+        }
         let components = f64::from(water.parameters.components);
         let [u, c, _] = component.variances(components).map(f64::sqrt);
         let [bound_u, bound_c, _] = component.bounds(components);
@@ -62,7 +72,7 @@ impl Slopes {
                 parameter: "footprint",
                 value: water.parameters.footprint.to_string(),
                 allowed: format!(
-                    "for exact statistics one whose facets are not so much finer than the drawn slopes \
+                    "one whose facets are not so much finer than the drawn slopes \
                      (standard deviations upwind {:.2e} and {u:.2e}); more components help too",
                     facets.sigma_u
                 ),

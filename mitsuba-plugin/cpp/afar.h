@@ -1,0 +1,131 @@
+/**
+ * The sea from afar as a Dr.Jit expression, `surface = "ensemble"`: the twin of the Rust core's ensemble_lobe.rs over the
+ * same table, interpolated linearly. Directions are drawn by the Lobe beside it.
+ */
+#pragma once
+
+#include "lobe.h"
+#include <mitsuba/core/fwd.h>
+
+namespace prob_water {
+
+template <typename Float_> struct Afar {
+    using Float = Float_;
+    using Mask = drjit::mask_t<Float>;
+    using UInt32 = drjit::uint32_array_t<Float>;
+    using Vector3f = mitsuba::Vector<Float, 3>;
+    using Buffer = mitsuba::DynamicBuffer<Float>;
+    /// D, means and variances of the slopes upwind and crosswind, and what fills a packet.
+    using Cell = drjit::Array<Float, 8>;
+
+    /// Nodes on a side of the table; 0 where there are no waves, or the surface is another.
+    uint32_t rows = 0;
+    Float inv_step_u, inv_step_c, sigma_u, sigma_c, foam, foam_u, foam_c;
+    Buffer cells;
+
+    explicit Afar(const Waves &w) : rows(w.rows) {
+        if (rows == 0)
+            return;
+        auto data = [](float x) { return drjit::opaque<Float>(x); };
+        inv_step_u = data(1.f / w.steps[0]);
+        inv_step_c = data(1.f / w.steps[1]);
+        sigma_u = data(w.sigma[0]);
+        sigma_c = data(w.sigma[1]);
+        foam = data(w.foam[0]);
+        foam_u = data(w.foam[1]);
+        foam_c = data(w.foam[2]);
+        cells = drjit::load<Buffer>(w.cells.data(), w.cells.size());
+    }
+
+    DRJIT_STRUCT(Afar, inv_step_u, inv_step_c, sigma_u, sigma_c, foam, foam_u, foam_c, cells)
+
+    /// f cos(theta_o) of some of its parts.
+    Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, Parts parts) const {
+        namespace dr = drjit;
+        auto [i_u, i_c] = lobe.wind_frame(i.x(), i.y());
+        auto [o_u, o_c] = lobe.wind_frame(o.x(), o.y());
+        Mask lit = i.z() > 0.f && o.z() > 0.f;
+
+        Float reflected = 0.f;
+        if (parts.facets) {
+            Float inv_h = dr::rcp(larger(i.z() + o.z(), Lobe<Float>::Small));
+            Cell cell = at(-(i_u + o_u) * inv_h, -(i_c + o_c) * inv_h, lit);
+            // Gauss and Hermite's five slopes in the plane of the two directions.
+            Float d_u = o_u - i_u, d_c = o_c - i_c, inv_d = dr::rsqrt(larger(dr::fmadd(d_u, d_u, d_c * d_c), 1e-20f));
+            d_u *= inv_d;
+            d_c *= inv_d;
+            Float spread = dr::sqrt(larger(dr::fmadd(d_u * d_u, cell[3], d_c * d_c * cell[4]), 0.f)),
+                  rho = lobe.template reflectance<Float>(smaller(.5f * dr::norm(i + o), 1.f)), shadowing = 0.f;
+            constexpr float Rule[3][2] = { { 0.f, 8.f / 15.f }, { 1.35562618f, .222075922f }, { 2.85697001f, .0112574113f } };
+            for (const auto &[x, weight] : Rule) {
+                for (float side : { 1.f, -1.f }) {
+                    if (x == 0.f && side < 0.f)
+                        continue;
+                    Float step = spread * (side * x), s_u = dr::fmadd(d_u, step, cell[1]), s_c = dr::fmadd(d_c, step, cell[2]);
+                    shadowing = dr::fmadd(visible(lobe, rho, i_u, i_c, i.z(), o_u, o_c, o.z(), s_u, s_c), weight, shadowing);
+                }
+            }
+            reflected = cell[0] * rho * shadowing;
+        }
+        if (parts.whitecaps) {
+            Float seen = dr::fmadd(foam * i.z(), o.z(), dr::fmadd(foam_u * i_u, o_u, foam_c * i_c * o_c));
+            reflected = dr::fmadd(lobe.whitecap_brdf, larger(seen, 0.f), reflected);
+        }
+        // Over cos theta_i (1 + L_i + L_o).
+        auto [h_i, h_o] = lobe.hidden(i.z(), waves(i_u, i_c), o.z(), waves(o_u, o_c));
+        Float over = dr::fmadd(i.z(), o.z(), dr::fmadd(o.z(), h_i.area / h_i.over, i.z() * h_o.area / h_o.over));
+        return dr::select(lit, reflected * o.z() / larger(over, Lobe<Float>::Tiny), 0.f);
+    }
+
+private:
+    /// Facets along a half vector of a slope upwind and crosswind; none beyond the table.
+    Cell at(const Float &slope_u, const Float &slope_c, const Mask &active) const {
+        namespace dr = drjit;
+        float middle = .5f * (rows - 1), end = rows - 1.001f;
+        Float u = dr::fmadd(slope_u, inv_step_u, middle), c = dr::fmadd(slope_c, inv_step_c, middle);
+        Mask inside = active && u >= 0.f && c >= 0.f && u < end && c < end;
+        u = dr::select(inside, u, 0.f);
+        c = dr::select(inside, c, 0.f);
+        UInt32 row(u), column(c), index = row * rows + column;
+        u -= Float(row);
+        c -= Float(column);
+        auto node = [&](uint32_t offset) { return dr::gather<Cell>(cells, index + offset, inside); };
+        Cell near = dr::fmadd(Cell(c), node(1) - node(0), node(0)),
+             far = dr::fmadd(Cell(c), node(rows + 1) - node(rows), node(rows));
+        return dr::fmadd(Cell(u), far - near, near);
+    }
+
+    /// sqrt(2) times the drawn slopes' standard deviation along a horizontal vector, times its length.
+    Float waves(const Float &u, const Float &c) const {
+        namespace dr = drjit;
+        return dr::SqrtTwo<float> * dr::sqrt(dr::square(u * sigma_u) + dr::square(c * sigma_c));
+    }
+
+    /// G about the normal of a slope, held to what the facets leave visible; 0 where it turns away.
+    static Float visible(const Lobe<Float> &lobe, const Float &rho, const Float &i_u, const Float &i_c, const Float &i_z,
+                         const Float &o_u, const Float &o_c, const Float &o_z, const Float &s_u, const Float &s_c) {
+        namespace dr = drjit;
+        Float n_z = dr::rsqrt(1.f + dr::fmadd(s_u, s_u, s_c * s_c)),
+              cos_i = (i_z - dr::fmadd(i_u, s_u, i_c * s_c)) * n_z, cos_o = (o_z - dr::fmadd(o_u, s_u, o_c * s_c)) * n_z,
+              both = cos_i * cos_o, area = both, over = 1.f;
+        Mask lit = cos_i > 0.f && cos_o > 0.f;
+        if (lobe.shadowing) {
+            auto [h_i, h_o] = lobe.hidden(cos_i, lobe.sigma_shadow * lobe.sine(cos_i), cos_o,
+                                          lobe.sigma_shadow * lobe.sine(cos_o));
+            over = h_i.over * h_o.over;
+            area = dr::fmadd(area, over, dr::fmadd(cos_o * h_i.area, h_o.over, cos_i * h_o.area * h_i.over));
+        }
+        if (lobe.bounded) {
+            auto spread = [&](const Float &u, const Float &c, const Float &z) {
+                Float a = dr::fmadd(z, s_u, u) * n_z * lobe.sigma_u, b = dr::fmadd(z, s_c, c) * n_z * lobe.sigma_c;
+                return dr::SqrtTwo<float> * dr::sqrt(dr::fmadd(a, a, b * b));
+            };
+            auto [h_i, h_o] = lobe.hidden(cos_i, spread(i_u, i_c, i_z), cos_o, spread(o_u, o_c, o_z));
+            Float v_i = cos_i + h_i.area / h_i.over, v_o = cos_o + h_o.area / h_o.over;
+            area = larger(area, over * rho / lobe.bound * larger(v_i * cos_o, v_o * cos_i));
+        }
+        return dr::select(lit, both * over / larger(area, Lobe<Float>::Tiny), 0.f);
+    }
+};
+
+} // namespace prob_water
