@@ -28,6 +28,7 @@ BSDFS: dict[str, dict[str, dict[str, Any]]] = {
         "prob_water": {"type": "prob_water"},
         "prob_water, slopes": {"type": "prob_water", "slope_measure": "slope"},
         "prob_water, w* = 4": {"type": "prob_water", "friction_velocity": 4},
+        "prob_water, ensemble": {"type": "prob_water", "surface": "ensemble"},
         "prob_water, no whitecaps": {"type": "prob_water", "whitecaps": False},
         "prob_water, no shadowing": {"type": "prob_water", "shadowing": False},
         "prob_water, no Gram-Charlier": {"type": "prob_water", "gram_charlier": False},
@@ -40,7 +41,7 @@ BSDFS: dict[str, dict[str, dict[str, Any]]] = {
         "roughconductor of the peer": ROUGHCONDUCTOR,
     },
 }
-WATERS = [name for name in BSDFS["prob_water"] if name.startswith("prob_water")]
+WATERS = [name for name in BSDFS["prob_water"] if name.startswith("prob_water") and "ensemble" not in name]
 #: Operation, numerator, denominator and the least ratio aimed at.
 AIMS = [("eval", "prob_water", "ocean_legacy", 2.0), ("sample", "prob_water", "ocean_legacy", 3.0),
         *(("sample", name, "roughconductor", 1.0) for name in WATERS)]

@@ -82,7 +82,9 @@ private:
     Cell at(const Float &slope_u, const Float &slope_c, const Mask &active) const {
         namespace dr = drjit;
         float middle = .5f * (rows - 1), end = rows - 1.001f;
-        Float u = dr::fmadd(slope_u, inv_step_u, middle), c = dr::fmadd(slope_c, inv_step_c, middle);
+        Float angle_u = slope_u * Lobe<Float>::atan_over(slope_u * slope_u),
+              angle_c = slope_c * Lobe<Float>::atan_over(slope_c * slope_c),
+              u = dr::fmadd(angle_u, inv_step_u, middle), c = dr::fmadd(angle_c, inv_step_c, middle);
         Mask inside = active && u >= 0.f && c >= 0.f && u < end && c < end;
         u = dr::select(inside, u, 0.f);
         c = dr::select(inside, c, 0.f);

@@ -21,9 +21,11 @@ use crate::{Error, Lobe, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// The table reaches to so many standard deviations of all slopes, in steps of so many.
+/// The table is over the half vector's tilt angles, to so many standard deviations of all slopes, or to the widest
+/// angle in radians, with so many nodes to either side of 0.
 const END: f64 = 6.0;
-const STEP: f64 = 1.0 / 6.0;
+const WIDEST: f64 = 1.5;
+const NODES: usize = 36;
 /// Gauss and Hermite's rule: standard deviations and weights.
 const RULE: [(f64, f64); 5] = [
     (0.0, 8.0 / 15.0),
@@ -50,7 +52,7 @@ pub struct EnsembleLobe {
 pub struct Table {
     /// Nodes on a side, the half vector's slope 0 in the middle.
     pub rows: u32,
-    /// Between nodes, upwind and crosswind.
+    /// Between nodes, tilt angles upwind and crosswind.
     pub steps: [f64; 2],
     /// Row by row (upwind) of every node: D, means and variances of the slopes upwind and crosswind, and zeros up to eight.
     pub cells: Vec<f32>,
@@ -63,10 +65,8 @@ pub struct Table {
 #[derive(Debug, Clone)]
 struct Waves {
     slopes: Slopes,
-    /// Of the table over the half vector's slope, upwind and crosswind.
+    /// Of the table over the half vector's tilt angles, upwind and crosswind.
     steps: DVec2,
-    /// Nodes to both sides of 0.
-    counts: [usize; 2],
     /// Row by row.
     cells: Vec<Cell>,
     /// Mean of N_z under whitecaps, and of N_z times the squares of the slope.
@@ -141,15 +141,15 @@ impl EnsembleLobe {
 
     /// For traced code; `None` where there are no waves and [`EnsembleLobe::sampler`] is all there is.
     pub fn table(&self) -> Option<Table> {
-        // So fine that linear interpolation errs by 2e-4.
-        const FINER: usize = 4;
+        // So fine that linear interpolation errs by 1e-4 in the median.
+        const FINER: usize = 5;
         let waves = self.waves.as_ref()?;
-        let rows = 2 * FINER * waves.counts[0] + 1;
+        let rows = 2 * FINER * NODES + 1;
         let steps = waves.steps / FINER as f64;
-        let middle = (FINER * waves.counts[0]) as f64;
+        let middle = (FINER * NODES) as f64;
         let cells = (0..rows * rows).into_par_iter().flat_map_iter(|n| {
             let place = DVec2::new((n / rows) as f64 - middle, (n % rows) as f64 - middle);
-            let Cell { density, mean, variance } = waves.at(place * steps);
+            let Cell { density, mean, variance } = waves.at_angles(place * steps);
             [density, mean.x, mean.y, variance.x, variance.y, 0.0, 0.0, 0.0].map(|x| x as f32)
         });
         let (level, tilted) = waves.foam;
@@ -174,14 +174,14 @@ impl EnsembleLobe {
 impl Waves {
     fn new(slopes: Slopes, water: &Water, wind: DVec2) -> Self {
         let facets = DVec2::from(water.variances.map(f64::sqrt));
-        let steps = STEP * (facets * facets + slopes.sigma * slopes.sigma).powf(0.5);
-        let count = (END / STEP) as usize;
-        let rows = 2 * count + 1;
+        let end = END * (facets * facets + slopes.sigma * slopes.sigma).powf(0.5);
+        let steps = end.min(DVec2::splat(WIDEST)) / NODES as f64;
+        let rows = 2 * NODES + 1;
         let cells = (0..rows * rows)
             .into_par_iter()
             .map(|n| {
-                let node = DVec2::new((n / rows) as f64 - count as f64, (n % rows) as f64 - count as f64);
-                Cell::new(&slopes, water, wind, node * steps)
+                let node = DVec2::new((n / rows) as f64, (n % rows) as f64) - NODES as f64;
+                Cell::new(&slopes, water, wind, (node * steps).map(f64::tan))
             })
             .collect();
         let mut foam = (0.0, DVec2::ZERO);
@@ -190,21 +190,26 @@ impl Waves {
             foam.0 += share;
             foam.1 += share * point.slope * point.slope;
         }
-        Self { slopes, steps, counts: [count; 2], cells, foam }
+        Self { slopes, steps, cells, foam }
     }
 
     /// Facets along a half vector of a slope upwind and crosswind; none beyond the table.
     fn at(&self, slope: DVec2) -> Cell {
-        let place = slope / self.steps + DVec2::new(self.counts[0] as f64, self.counts[1] as f64);
-        let [rows, columns] = self.counts.map(|count| 2 * count + 1);
+        self.at_angles(slope.map(f64::atan))
+    }
+
+    /// The same for tilt angles.
+    fn at_angles(&self, angles: DVec2) -> Cell {
+        let place = angles / self.steps + NODES as f64;
+        let rows = 2 * NODES + 1;
         let (x, y) = (place.x.floor(), place.y.floor());
-        if !(x >= 1.0 && y >= 1.0 && x < (rows - 2) as f64 && y < (columns - 2) as f64) {
+        if !(x >= 1.0 && y >= 1.0 && x < (rows - 2) as f64 && y < (rows - 2) as f64) {
             return Cell::default();
         }
         let (along, across) = (cubic(place.x - x), cubic(place.y - y));
         let mut cell = Cell::default();
         for (i, wx) in along.iter().enumerate() {
-            let row = (x as usize + i - 1) * columns + y as usize - 1;
+            let row = (x as usize + i - 1) * rows + y as usize - 1;
             for (node, wy) in self.cells[row..row + 4].iter().zip(across) {
                 let weight = wx * wy;
                 cell.density += weight * node.density;

@@ -179,3 +179,20 @@ fn albedo() {
         }
     }
 }
+
+/// The glitter path fades at its sides: no end of a table shows, down to a millionth of the peak.
+#[test]
+fn fades_without_an_edge() {
+    for (w, elevation, view) in
+        [(8.0, 25.0, 86.0), (24.0, 25.0, 86.0), (24.0, 60.0, 75.0), (56.0, 10.0, 88.0)]
+    {
+        let lobe = EnsembleLobe::new(&sea(w, |p| p.whitecaps = false)).unwrap();
+        let i = direction(90.0 - elevation, 0.0);
+        let scan: Vec<f64> =
+            (0..720).map(|a| lobe.eval(i, direction(view, 180.0 + 0.25 * f64::from(a)))).collect();
+        let peak = scan.iter().copied().fold(0.0, f64::max);
+        for (a, pair) in scan.windows(2).enumerate().filter(|(_, pair)| pair[0] > 1e-6 * peak) {
+            assert!(pair[1] > 0.6 * pair[0], "w* {w} view {view}: {pair:?} at {} degrees", 0.25 * a as f64);
+        }
+    }
+}
