@@ -15,7 +15,7 @@
 use crate::brdf::{Parts, up};
 use crate::characteristic::Component;
 use crate::quadrature::midpoints;
-use crate::slope_density::{Slopes, cubic};
+use crate::slope_density::{Slopes, WindFrame, cubic};
 use crate::surface::normal;
 use crate::{Error, Lobe, Water};
 use glam::{DVec2, DVec3};
@@ -42,7 +42,7 @@ pub struct EnsembleLobe {
     /// Draws directions, and knows their density: the facets' own proposal, widened by the waves' slopes, and whitecaps
     /// in proportion to what they cover. Its `eval` is not this lobe's.
     pub sampler: Lobe<f64>,
-    wind: DVec2,
+    wind: WindFrame,
     /// `None`: no waves, the surface is level.
     waves: Option<Waves>,
 }
@@ -87,7 +87,7 @@ impl EnsembleLobe {
     /// Tabulates a sea; refused as by [`crate::Exact::new`].
     pub fn new(water: &Water) -> Result<Self, Error> {
         let waves = water.waves();
-        let wind = DVec2::from_angle(waves.wind_azimuth);
+        let wind = WindFrame::new(waves.wind_azimuth);
         let slopes = Component::new(&waves).map(|component| Slopes::new(&component, water)).transpose()?;
         let waves = slopes.map(|slopes| Waves::new(slopes, water, wind));
         let mut sampler = water.lobe;
@@ -117,21 +117,21 @@ impl EnsembleLobe {
             return self.sampler.eval_parts(i.into(), o.into(), up(), parts);
         };
         let half = i + o;
-        let cell = waves.at(self.in_wind(-half.truncate() / half.z));
+        let cell = waves.at(self.wind.to_wind(-half.truncate() / half.z));
         let mut reflected = 0.0;
         if parts.facets && cell.density > 0.0 {
             // Either way round the rule meets the same slopes.
             let across = (o - i).truncate().try_normalize().unwrap_or(DVec2::X);
-            let along = self.in_wind(across);
+            let along = self.wind.to_wind(across);
             let spread = (along * along).dot(cell.variance).max(0.0).sqrt();
             let shadowing = |(x, weight): &(f64, f64)| {
-                let slope = self.in_world(cell.mean + along * spread * *x);
+                let slope = self.wind.to_world(cell.mean + along * spread * *x);
                 weight * lobe.facets.shadowed_reflectance(i.into(), o.into(), normal(slope.into()))
             };
             reflected = cell.density * RULE.iter().map(shadowing).sum::<f64>();
         }
         let (level, tilted) = waves.foam;
-        let [i_wind, o_wind] = [i, o].map(|v| self.in_wind(v.truncate()));
+        let [i_wind, o_wind] = [i, o].map(|v| self.wind.to_wind(v.truncate()));
         if parts.whitecaps {
             reflected += lobe.whitecap_brdf * (level * i.z * o.z + (tilted * i_wind).dot(o_wind)).max(0.0);
         }
@@ -161,18 +161,10 @@ impl EnsembleLobe {
             foam: [level, tilted.x, tilted.y],
         })
     }
-
-    fn in_wind(&self, v: DVec2) -> DVec2 {
-        DVec2::new(v.dot(self.wind), v.dot(self.wind.perp()))
-    }
-
-    fn in_world(&self, v: DVec2) -> DVec2 {
-        v.x * self.wind + v.y * self.wind.perp()
-    }
 }
 
 impl Waves {
-    fn new(slopes: Slopes, water: &Water, wind: DVec2) -> Self {
+    fn new(slopes: Slopes, water: &Water, wind: WindFrame) -> Self {
         let facets = DVec2::from(water.variances.map(f64::sqrt));
         let end = END * (facets * facets + slopes.sigma * slopes.sigma).powf(0.5);
         let steps = end.min(DVec2::splat(WIDEST)) / NODES as f64;
@@ -224,9 +216,9 @@ impl Waves {
 
 impl Cell {
     /// For a half vector of a slope upwind and crosswind.
-    fn new(slopes: &Slopes, water: &Water, wind: DVec2, half: DVec2) -> Self {
+    fn new(slopes: &Slopes, water: &Water, wind: WindFrame, half: DVec2) -> Self {
         let facets = &water.lobe.facets;
-        let in_world = |v: DVec2| normal((v.x * wind + v.y * wind.perp()).into());
+        let in_world = |v: DVec2| normal(wind.to_world(v).into());
         let lobe = facets.spread(half);
         let mut cell = Self::default();
         let Some((low, high)) = slopes.meeting(half, lobe) else { return cell };

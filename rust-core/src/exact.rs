@@ -15,7 +15,7 @@ use crate::characteristic::Component;
 use crate::ensemble::{QUANTILES, Statistics};
 use crate::quadrature::{gauss_legendre, midpoints, panels};
 use crate::scenario::Engagement;
-use crate::slope_density::{Point, Slopes};
+use crate::slope_density::{Point, Slopes, WindFrame};
 use crate::surface::normal;
 use crate::{Error, Water};
 use glam::{DVec2, DVec3};
@@ -32,7 +32,7 @@ const PANEL: f64 = 14.0;
 #[derive(Debug, Clone)]
 pub struct Exact {
     water: Water,
-    wind: DVec2,
+    wind: WindFrame,
     /// Obscuration by Smith's share; off for what a point of the surface would reflect if nothing stood in the way.
     pub obscuration: bool,
     /// `None`: no waves, the surface is level.
@@ -59,7 +59,7 @@ impl Exact {
         let component = Component::new(&waves);
         Ok(Self {
             water: *water,
-            wind: DVec2::from_angle(waves.wind_azimuth),
+            wind: WindFrame::new(waves.wind_azimuth),
             obscuration: true,
             slopes: component.map(|component| Slopes::new(&component, water)).transpose()?,
             rule: gauss_legendre(NODES),
@@ -105,7 +105,7 @@ impl Exact {
         let direction = -DVec3::from(engagement.direction());
         let lit = self.slopes.as_ref().map_or(direction.z, |slopes| {
             // Slopes have no mean: where all face the source the area shown is that of the level surface.
-            if slopes.all_face(self.in_wind(direction.truncate()), direction.z) {
+            if slopes.all_face(self.wind.to_wind(direction.truncate()), direction.z) {
                 direction.z
             } else {
                 self.sum(slopes, FINE, |s, p, _| p * shown(s, direction))
@@ -117,7 +117,7 @@ impl Exact {
     /// What waves leave visible of the hits to an observer above them, on average.
     fn visible(&self, source: &Source, o: DVec3) -> f64 {
         let Some(slopes) = self.slopes.as_ref().filter(|_| self.obscuration) else { return 1.0 };
-        let lambda = |v: DVec3| slopes.hidden(self.in_wind(v.truncate()), v.z);
+        let lambda = |v: DVec3| slopes.hidden(self.wind.to_wind(v.truncate()), v.z);
         let (i, o) = (lambda(source.direction), lambda(o));
         (1.0 + i) / (1.0 + i + o)
     }
@@ -161,14 +161,14 @@ impl Exact {
     fn integrate(&self, slopes: &Slopes, i: DVec3, o: DVec3, mut add: impl FnMut(DVec2, f64, f64, f64)) {
         let h = i + o;
         // The slope that mirrors the source to the observer, and how far facets let the wave's slope be from it.
-        let specular = self.in_wind(-h.truncate() / h.z);
+        let specular = self.wind.to_wind(-h.truncate() / h.z);
         let lobe = self.water.lobe.facets.spread(specular);
         let Some((low, high)) = slopes.meeting(specular, lobe) else { return };
 
         // Along the view's azimuth slopes end where they turn away from the observer, or from a source in line.
         let along = if o.truncate().length() > 1e-6 { o.truncate() } else { i.truncate() };
         let along = along.try_normalize().unwrap_or(DVec2::X);
-        let (e, f) = (self.in_wind(along), self.in_wind(along.perp()));
+        let (e, f) = (self.wind.to_wind(along), self.wind.to_wind(along.perp()));
         let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
         let reach = |axis: DVec2| {
             let extent = (axis.x * half.x).hypot(axis.y * half.y);
@@ -195,7 +195,7 @@ impl Exact {
             for (x, width) in &columns {
                 let slope = e * *x + f * y;
                 let (density, capped) = slopes.at(slope);
-                add(self.in_world(slope), width * height, density, capped);
+                add(self.wind.to_world(slope), width * height, density, capped);
             }
         }
     }
@@ -204,7 +204,7 @@ impl Exact {
     fn sum(&self, slopes: &Slopes, stride: usize, mut of: impl FnMut(DVec2, f64, f64) -> f64) -> f64 {
         let table = &slopes.density;
         let mut sum = 0.0;
-        slopes.nodes(stride, |slope, density, capped| sum += of(self.in_world(slope), density, capped));
+        slopes.nodes(stride, |slope, density, capped| sum += of(self.wind.to_world(slope), density, capped));
         sum * table.steps[0] * table.steps[1] * (stride * stride) as f64
     }
 
@@ -219,7 +219,7 @@ impl Exact {
         let (mut area, mut foam) = (0.0, 0.0);
         let mut values = vec![];
         for point in points {
-            let s = self.in_world(point.slope);
+            let s = self.wind.to_world(point.slope);
             let shown_to_source = shown(s, i);
             area += point.density * shown_to_source;
             foam += point.capped * shown_to_source;
@@ -233,15 +233,6 @@ impl Exact {
         }
         values.iter_mut().for_each(|(_, weight)| *weight /= area);
         (Distribution::new(values), foam / area)
-    }
-
-    /// A horizontal vector in components upwind and crosswind.
-    fn in_wind(&self, v: DVec2) -> DVec2 {
-        DVec2::new(v.dot(self.wind), v.dot(self.wind.perp()))
-    }
-
-    fn in_world(&self, v: DVec2) -> DVec2 {
-        v.x * self.wind + v.y * self.wind.perp()
     }
 }
 

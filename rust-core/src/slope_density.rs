@@ -37,6 +37,25 @@ const LOBE_FREQUENCY: f64 = 4.5;
 /// Points for distributions.
 const POINTS: u32 = 8192;
 
+/// Horizontal vectors in components upwind and crosswind.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WindFrame(DVec2);
+
+impl WindFrame {
+    /// Of a wind from an azimuth in radians.
+    pub fn new(azimuth: f64) -> Self {
+        Self(DVec2::from_angle(azimuth))
+    }
+
+    pub fn to_wind(self, v: DVec2) -> DVec2 {
+        DVec2::new(v.dot(self.0), v.dot(self.0.perp()))
+    }
+
+    pub fn to_world(self, v: DVec2) -> DVec2 {
+        v.x * self.0 + v.y * self.0.perp()
+    }
+}
+
 /// The slopes of a drawn surface.
 #[derive(Debug, Clone)]
 pub(crate) struct Slopes {
