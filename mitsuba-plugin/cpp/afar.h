@@ -56,13 +56,16 @@ template <typename Float_> struct Afar {
             d_c *= inv_d;
             Float spread = dr::sqrt(larger(dr::fmadd(d_u * d_u, cell[3], d_c * d_c * cell[4]), 0.f)),
                   rho = lobe.template reflectance<Float>(smaller(.5f * dr::norm(i + o), 1.f)), shadowing = 0.f;
-            constexpr float Rule[3][2] = { { 0.f, 8.f / 15.f }, { 1.35562618f, .222075922f }, { 2.85697001f, .0112574113f } };
+            constexpr float Rule[3][2] = { { 0.f, 8.f / 15.f }, { 1.35562618f, .222075922f },
+                                           { 2.85697001f, .0112574113f } };
             for (const auto &[x, weight] : Rule) {
                 for (float side : { 1.f, -1.f }) {
                     if (x == 0.f && side < 0.f)
                         continue;
-                    Float step = spread * (side * x), s_u = dr::fmadd(d_u, step, cell[1]), s_c = dr::fmadd(d_c, step, cell[2]);
-                    shadowing = dr::fmadd(visible(lobe, rho, i_u, i_c, i.z(), o_u, o_c, o.z(), s_u, s_c), weight, shadowing);
+                    Float step = spread * (side * x), s_u = dr::fmadd(d_u, step, cell[1]),
+                          s_c = dr::fmadd(d_c, step, cell[2]),
+                          g = visible(lobe, rho, i_u, i_c, i.z(), o_u, o_c, o.z(), s_u, s_c);
+                    shadowing = dr::fmadd(g, weight, shadowing);
                 }
             }
             reflected = cell[0] * rho * shadowing;
@@ -109,23 +112,15 @@ private:
         namespace dr = drjit;
         Float n_z = dr::rsqrt(1.f + dr::fmadd(s_u, s_u, s_c * s_c)),
               cos_i = (i_z - dr::fmadd(i_u, s_u, i_c * s_c)) * n_z, cos_o = (o_z - dr::fmadd(o_u, s_u, o_c * s_c)) * n_z,
-              both = cos_i * cos_o, area = both, over = 1.f;
+              both = cos_i * cos_o;
         Mask lit = cos_i > 0.f && cos_o > 0.f;
-        if (lobe.shadowing) {
-            auto [h_i, h_o] = lobe.hidden(cos_i, lobe.sigma_shadow * lobe.sine(cos_i), cos_o,
-                                          lobe.sigma_shadow * lobe.sine(cos_o));
-            over = h_i.over * h_o.over;
-            area = dr::fmadd(area, over, dr::fmadd(cos_o * h_i.area, h_o.over, cos_i * h_o.area * h_i.over));
-        }
-        if (lobe.bounded) {
-            auto spread = [&](const Float &u, const Float &c, const Float &z) {
-                Float a = dr::fmadd(z, s_u, u) * n_z * lobe.sigma_u, b = dr::fmadd(z, s_c, c) * n_z * lobe.sigma_c;
-                return dr::SqrtTwo<float> * dr::sqrt(dr::fmadd(a, a, b * b));
-            };
-            auto [h_i, h_o] = lobe.hidden(cos_i, spread(i_u, i_c, i_z), cos_o, spread(o_u, o_c, o_z));
-            Float v_i = cos_i + h_i.area / h_i.over, v_o = cos_o + h_o.area / h_o.over;
-            area = larger(area, over * rho / lobe.bound * larger(v_i * cos_o, v_o * cos_i));
-        }
+        auto spread = [&](const Float &u, const Float &c, const Float &z) {
+            Float a = dr::fmadd(z, s_u, u) * n_z * lobe.sigma_u, b = dr::fmadd(z, s_c, c) * n_z * lobe.sigma_c;
+            return Float(dr::SqrtTwo<float> * dr::sqrt(dr::fmadd(a, a, b * b)));
+        };
+        auto [area, over] = lobe.unshadowed(rho, cos_i, cos_o, [&] {
+            return std::pair(spread(i_u, i_c, i_z), spread(o_u, o_c, o_z));
+        });
         return dr::select(lit, both * over / larger(area, Lobe<Float>::Tiny), 0.f);
     }
 };

@@ -307,20 +307,29 @@ private:
             p *= larger(k, 0.f);
         }
 
-        // cos theta_i cos theta_r/G as area/over (Eqs. 61-67), at least what the facets themselves hide where
-        // the bound is in force.
-        Float rho = reflectance<T>(g.cos_zeta), area = g.cos_i * g.cos_o, over = 1.f;
+        // Eqs. 61-67, at least what the facets themselves hide where the bound is in force.
+        Float rho = reflectance<T>(g.cos_zeta);
+        auto [area, over] = unshadowed(rho, g.cos_i, g.cos_o, [&] { return std::pair(spread(i), spread(o)); });
+        return p * (rho * scale * over) / larger(area, Tiny);
+    }
+
+    /// cos theta_i cos theta_r/G as a quotient area/over; `spreads` gives the facets' along the two directions.
+    template <typename Spreads>
+    std::pair<Float, Float> unshadowed(const Float &rho, const Float &cos_i, const Float &cos_o, Spreads spreads) const {
+        namespace dr = drjit;
+        Float area = cos_i * cos_o, over = 1.f;
         if (shadowing) {
-            auto [h_i, h_o] = hidden(g.cos_i, sigma_shadow * sine(g.cos_i), g.cos_o, sigma_shadow * sine(g.cos_o));
+            auto [h_i, h_o] = hidden(cos_i, sigma_shadow * sine(cos_i), cos_o, sigma_shadow * sine(cos_o));
             over = h_i.over * h_o.over;
-            area = dr::fmadd(area, over, dr::fmadd(g.cos_o * h_i.area, h_o.over, g.cos_i * h_o.area * h_i.over));
+            area = dr::fmadd(area, over, dr::fmadd(cos_o * h_i.area, h_o.over, cos_i * h_o.area * h_i.over));
         }
         if (bounded) {
-            auto [h_i, h_o] = hidden(g.cos_i, spread(i), g.cos_o, spread(o));
-            Float v_i = g.cos_i + h_i.area / h_i.over, v_o = g.cos_o + h_o.area / h_o.over;
-            area = larger(area, over * rho / bound * larger(v_i * g.cos_o, v_o * g.cos_i));
+            auto [s_i, s_o] = spreads();
+            auto [h_i, h_o] = hidden(cos_i, s_i, cos_o, s_o);
+            Float v_i = cos_i + h_i.area / h_i.over, v_o = cos_o + h_o.area / h_o.over;
+            area = larger(area, over * rho / bound * larger(v_i * cos_o, v_o * cos_i));
         }
-        return p * (rho * scale * over) / larger(area, Tiny);
+        return { area, over };
     }
 
     static Float sine(const Float &cos) {

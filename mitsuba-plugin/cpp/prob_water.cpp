@@ -188,7 +188,9 @@ public:
             auto g = m_lobe.template geometry<Float>(si.wi, bs.wo);
             bs.pdf = m_lobe.pdf(g, si.wi, parts);
             active &= bs.pdf > 0.f;
-            weight = (m_afar.rows ? m_afar.eval(m_lobe, si.wi, bs.wo, parts) : m_lobe.eval(g, si.wi, bs.wo, parts)) / bs.pdf;
+            Float value = m_afar.rows ? m_afar.eval(m_lobe, si.wi, bs.wo, parts)
+                                      : m_lobe.eval(g, si.wi, bs.wo, parts);
+            weight = value / bs.pdf;
         } else {
             float u[3] = { sample1, sample2.x(), sample2.y() };
             ProbWaterSample s{};

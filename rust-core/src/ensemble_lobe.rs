@@ -76,7 +76,7 @@ struct Waves {
 /// Facets along a half vector.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cell {
-    /// D: their density over 1/4 of Eq. 56, all waves together.
+    /// D: their density with the 1/4 of Eq. 56, all waves together.
     density: f64,
     /// Of the slopes of the waves that carry them.
     mean: DVec2,

@@ -108,7 +108,8 @@ impl Exact {
             if slopes.all_face(self.wind.to_wind(direction.truncate()), direction.z) {
                 direction.z
             } else {
-                self.sum(slopes, FINE, |s, p, _| p * shown(s, direction))
+                let [lit] = self.sum(slopes, FINE, |s, p, _| [p * shown(s, direction)]);
+                lit
             }
         });
         Source { direction, lit }
@@ -140,15 +141,16 @@ impl Exact {
         });
         if slopes.capped.is_some() {
             let f = lobe.whitecap_brdf;
-            let foam = |cosine: &dyn Fn(DVec2) -> f64| {
-                self.sum(slopes, COARSE, |s, _, capped| {
-                    if shown(s, o) > 0.0 { capped * shown(s, i) * cosine(s) } else { 0.0 }
-                })
-            };
-            let share = foam(&|_| 1.0);
+            let [share, share_cos] = self.sum(slopes, COARSE, |s, _, capped| {
+                if shown(s, o) <= 0.0 {
+                    return [0.0; 2];
+                }
+                let share = capped * shown(s, i);
+                [share, share * DVec3::from(normal(s.into())).dot(o)]
+            });
             means.f += f * share;
             means.f_squared += f * f * share;
-            means.f_cos += f * foam(&|s| DVec3::from(normal(s.into())).dot(o));
+            means.f_cos += f * share_cos;
         }
         let scale = self.visible(source, o) / source.lit;
         // Far out, where the density is nothing but ripples, sums may fall below 0.
@@ -200,12 +202,20 @@ impl Exact {
         }
     }
 
-    /// Sum of `of(slope, density, W)` over the nodes of the table, every `stride`th, times their area.
-    fn sum(&self, slopes: &Slopes, stride: usize, mut of: impl FnMut(DVec2, f64, f64) -> f64) -> f64 {
+    /// Sums of `of(slope, density, W)` over the nodes of the table, every `stride`th, times their area.
+    fn sum<const N: usize>(
+        &self,
+        slopes: &Slopes,
+        stride: usize,
+        of: impl Fn(DVec2, f64, f64) -> [f64; N],
+    ) -> [f64; N] {
         let table = &slopes.density;
-        let mut sum = 0.0;
-        slopes.nodes(stride, |slope, density, capped| sum += of(self.wind.to_world(slope), density, capped));
-        sum * table.steps[0] * table.steps[1] * (stride * stride) as f64
+        let mut sums = [0.0; N];
+        slopes.nodes(stride, |slope, density, capped| {
+            let values = of(self.wind.to_world(slope), density, capped);
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        });
+        sums.map(|sum| sum * table.steps[0] * table.steps[1] * (stride * stride) as f64)
     }
 
     /// The distribution of f over the hits, and the share of whitecaps among them.

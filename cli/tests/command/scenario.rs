@@ -1,9 +1,7 @@
-use crate::{column, command, float, floats, same, succeed, table};
+use crate::{column, command, float, floats, leave_early, same, succeed, table};
 use serde_json::Value;
 use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use tempfile::TempDir;
 
 /// A folder with one scenario file.
@@ -270,18 +268,7 @@ fn a_reader_may_leave_early() {
     let expected = sea.run_with_instances("");
     assert!(expected[0].len() > 500_000, "well over what a pipe holds");
     let path = sea.path("late.csv");
-    let mut child = command()
-        .arg("scenario")
-        .arg(sea.path("sea.toml"))
-        .arg("--instances-out")
-        .arg(&path)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdout.take().unwrap().read_exact(&mut [0; 10]).unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    leave_early(command().arg("scenario").arg(sea.path("sea.toml")).arg("--instances-out").arg(&path));
     assert_eq!(fs::read_to_string(path).unwrap(), expected[1]);
 }
 
