@@ -3,7 +3,7 @@
 
 use crate::trigonometry::{LANES, sin_cos};
 use crate::waves::Component;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// A drawn sea at one time: a sum of cosines, kept by property so that the sums vectorise. Metres and seconds. The
 /// arrays are filled up to whole lanes with waves of amplitude 0.
@@ -47,6 +47,13 @@ impl Point {
 pub fn normal([sx, sy]: [f64; 2]) -> [f64; 3] {
     let z = 1.0 / (1.0 + sx * sx + sy * sy).sqrt();
     [-sx * z, -sy * z, z]
+}
+
+/// The share of a wave's energy, for a wave number in rad/m, that stays geometry where the footprint in m changes from
+/// place to place: 1 for waves longer than 2 D, 0 for shorter ones, and between in an octave, so that no wave ends at a
+/// line. The rest is facets there.
+pub fn share(wave_number: f64, footprint: f64) -> f64 {
+    (0.5 - (wave_number * footprint / PI).log2()).clamp(0.0, 1.0)
 }
 
 impl Surface {
