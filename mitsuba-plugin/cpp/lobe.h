@@ -1,5 +1,5 @@
 /**
- * The closed form of the BRDF about (0, 0, 1) as Dr.Jit expressions: the twin of the Rust core's
+ * The closed form of the BRDF as Dr.Jit expressions: the twin of the Rust core's
  * brdf.rs and sampling.rs over the same coefficients, compared with it lane by lane in the tests.
  * Equation numbers are the report's; the names are the core's.
  */
@@ -88,6 +88,27 @@ template <typename Float_> struct Lobe {
                  sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm,
                  normal_reflectance, ior2, whitecap_fraction, whitecap_brdf)
 
+    /// The wave normal with tangents along and across the wind; level where there are no waves.
+    struct Frame {
+        bool level = true;
+        Vector3f u, c, n;
+    };
+
+    Frame frame(const Vector3f &n) const {
+        namespace dr = drjit;
+        Float cos_w(cos_wind), sin_w(sin_wind), along = dr::fmadd(cos_w, n.x(), sin_w * n.y());
+        Vector3f u = dr::normalize(Vector3f(cos_w, sin_w, 0.f) - along * n);
+        return { false, u, dr::cross(n, u), n };
+    }
+
+    /// Components along the wind, across it and along the normal.
+    Vector3f to_local(const Frame &frame, const Vector3f &v) const {
+        if (!frame.level)
+            return { drjit::dot(frame.u, v), drjit::dot(frame.c, v), drjit::dot(frame.n, v) };
+        auto [u, c] = wind_frame(v.x(), v.y());
+        return { u, c, v.z() };
+    }
+
     /// What the two directions fix, with tilts in numbers of type T.
     template <typename T> struct Geometry {
         Float cos_i, cos_o, cos_zeta;
@@ -97,16 +118,26 @@ template <typename Float_> struct Lobe {
         Float slope_u, slope_c;
         /// Tilts in the density's measure.
         T tilt_u, tilt_c;
+        /// The source in the frame of the normal, and the horizontal parts of both as seen from the normal.
+        Vector3f local_i;
+        Point2f seen_i, seen_o;
         Mask lit;
     };
 
-    template <typename T> Geometry<T> geometry(const Vector3f &i, const Vector3f &o) const {
+    template <typename T> Geometry<T> geometry(const Vector3f &i, const Vector3f &o, const Frame &frame = {}) const {
         namespace dr = drjit;
         Geometry<T> g;
+        g.local_i = to_local(frame, i);
+        g.cos_zeta = smaller(.5f * dr::norm(i + o), 1.f);
+        if (!frame.level) {
+            tilted(g, i, o, frame);
+            return g;
+        }
         g.cos_i = i.z();
         g.cos_o = o.z();
         g.lit = g.cos_i > 0.f && g.cos_o > 0.f;
-        g.cos_zeta = smaller(.5f * dr::norm(i + o), 1.f);
+        g.seen_i = { i.x(), i.y() };
+        g.seen_o = { o.x(), o.y() };
 
         T z = larger(T(i.z()) + T(o.z()), dr::scalar_t<T>(Small));
         auto [u, c] = wind_frame(T(i.x()) + T(o.x()), T(i.y()) + T(o.y()));
@@ -130,11 +161,11 @@ template <typename Float_> struct Lobe {
     }
 
     /// f cos(theta_o), Eqs. 55-79, of some of its parts, each with its share of the surface.
-    template <typename T> Float eval(const Geometry<T> &g, const Vector3f &i, const Vector3f &o, Parts parts) const {
+    template <typename T> Float eval(const Geometry<T> &g, Parts parts) const {
         namespace dr = drjit;
         Float f = 0.f;
         if (parts.facets) {
-            f = smaller(facets(g, i, o), Largest);
+            f = smaller(facets(g), Largest);
             if (parts.whitecaps)
                 f = dr::fmadd(whitecap_fraction, whitecap_brdf - f, f);
             else
@@ -146,11 +177,11 @@ template <typename Float_> struct Lobe {
     }
 
     /// Density, 1/sr, with which sample() draws o.
-    template <typename T> Float pdf(const Geometry<T> &g, const Vector3f &i, Parts parts) const {
+    template <typename T> Float pdf(const Geometry<T> &g, Parts parts) const {
         namespace dr = drjit;
         if (!parts.facets)
             return dr::select(g.lit, g.cos_o * dr::InvPi<float>, 0.f);
-        Proposal p = proposal(i);
+        Proposal p = proposal(g.local_i);
         // Tilts of the proposal are slopes, or the angle from the normal with its azimuth.
         Float tilt_over_slope = 1.f, jacobian = dr::square(g.inv_cos2_xi);
         if (!slope_measure) {
@@ -176,24 +207,26 @@ template <typename Float_> struct Lobe {
     }
 
     /// A direction, zero where the draw is lost, and whether it comes from the whitecaps.
-    std::pair<Vector3f, Mask> sample(const Vector3f &i, Float u0, const Point2f &u, Parts parts) const {
+    std::pair<Vector3f, Mask> sample(const Vector3f &i, Float u0, const Point2f &u, Parts parts,
+                                     const Frame &frame = {}) const {
         namespace dr = drjit;
         if (!parts.facets) {
             auto [sin, cos] = turn_sincos(u.y());
-            return { cosine(u.x(), sin, cos), Mask(true) };
+            return { cosine(u.x(), sin, cos, frame), Mask(true) };
         }
+        Vector3f l = to_local(frame, i);
 
         Mask whitecap = false;
         Float choice = u0;
         if (parts.whitecaps) {
             // u0 over the facets' share.
-            auto [facets, whitecaps] = albedos(i.z());
+            auto [facets, whitecaps] = albedos(l.z());
             choice = u0 * (facets + whitecaps) / larger(facets, Tiny);
             whitecap = choice >= 1.f;
             choice = smaller(choice, 1.f);
         }
 
-        Proposal p = proposal(i);
+        Proposal p = proposal(l);
         Float scaled = choice * (1.f + p.tail);
         Mask in_tail = scaled < p.tail;
         Float rest = dr::select(in_tail, scaled / larger(p.tail, Tiny), scaled - p.tail);
@@ -220,22 +253,28 @@ template <typename Float_> struct Lobe {
 
         // Kept, or turned around, in proportion to what the two show the source.
         Float h_u = t_u * sin_over, h_c = t_c * sin_over,
-              level_area = cos_xi * i.z(), slanted = dr::fmadd(h_u, p.i_u, h_c * p.i_c),
+              level_area = cos_xi * l.z(), slanted = dr::fmadd(h_u, p.i_u, h_c * p.i_c),
               a = larger(level_area + slanted, 0.f), b = larger(level_area - slanted, 0.f);
         Mask turn = !in_tail && rest * (a + b) < b;
         h_u = dr::select(turn, -h_u, h_u);
         h_c = dr::select(turn, -h_c, h_c);
-        Float cos_w(cos_wind), sin_w(sin_wind);
-        Vector3f h(dr::fmsub(h_u, cos_w, h_c * sin_w), dr::fmadd(h_u, sin_w, h_c * cos_w), cos_xi);
+        Vector3f h;
+        if (frame.level) {
+            Float cos_w(cos_wind), sin_w(sin_wind);
+            h = Vector3f(dr::fmsub(h_u, cos_w, h_c * sin_w), dr::fmadd(h_u, sin_w, h_c * cos_w), cos_xi);
+        } else {
+            h = dr::fmadd(h_u, frame.u, dr::fmadd(h_c, frame.c, cos_xi * frame.n));
+        }
         Vector3f o = dr::fmsub(Vector3f(2.f * dr::dot(i, h)), h, i);
         o = dr::select(valid, o, 0.f);
         if (parts.whitecaps)
-            o = dr::select(whitecap, cosine(u.x(), sin, cos), o);
+            o = dr::select(whitecap, cosine(u.x(), sin, cos, frame), o);
         return { o, whitecap };
     }
 
 private:
     template <typename> friend struct Afar;
+    template <typename> friend struct Drawn;
 
     /// What the source fixes of the facets' proposal: its horizontal components, components of z that make rD,
     /// 1/cos theta_i, 1/D, D phi(1/D).
@@ -243,10 +282,12 @@ private:
         Float i_u, i_c, u, c, inv_cos, inv_d, tail;
     };
 
+    /// For a source in the frame of the normal.
     Proposal proposal(const Vector3f &i) const {
         namespace dr = drjit;
         Proposal p;
-        std::tie(p.i_u, p.i_c) = wind_frame(i.x(), i.y());
+        p.i_u = i.x();
+        p.i_c = i.y();
         p.inv_cos = dr::rcp(larger(i.z(), Grazing));
         p.u = p.i_u * proposal_u * p.inv_cos;
         p.c = p.i_c * proposal_c * p.inv_cos;
@@ -256,10 +297,49 @@ private:
         return p;
     }
 
-    static Vector3f cosine(const Float &u, const Float &sin, const Float &cos) {
+    /// A direction about the normal, in proportion to its cosine.
+    static Vector3f cosine(const Float &u, const Float &sin, const Float &cos, const Frame &frame) {
         namespace dr = drjit;
-        Float r = dr::sqrt(u);
-        return { r * cos, r * sin, dr::safe_sqrt(1.f - u) };
+        Float r = dr::sqrt(u), x = r * cos, y = r * sin, z = dr::safe_sqrt(1.f - u);
+        if (frame.level)
+            return { x, y, z };
+        // Tangents of a normal that points up, the identity for a level one.
+        const Vector3f &n = frame.n;
+        Float a = -dr::rcp(1.f + n.z()), b = n.x() * n.y() * a;
+        Vector3f s(dr::fmadd(n.x() * n.x(), a, 1.f), b, -n.x()), t(b, dr::fmadd(n.y() * n.y(), a, 1.f), -n.y());
+        return dr::fmadd(x, s, dr::fmadd(y, t, z * n));
+    }
+
+    /// The geometry about a wave normal: alpha_u(H) - alpha_u(N) as one angle, as in the core.
+    template <typename T>
+    void tilted(Geometry<T> &g, const Vector3f &i, const Vector3f &o, const Frame &frame) const {
+        namespace dr = drjit;
+        using S = dr::scalar_t<T>;
+        const Vector3f &n = frame.n;
+        g.cos_i = g.local_i.z();
+        g.cos_o = dr::dot(o, n);
+        g.lit = g.cos_i > 0.f && g.cos_o > 0.f;
+        g.seen_i = { dr::fmsub(i.x(), n.z(), i.z() * n.x()), dr::fmsub(i.y(), n.z(), i.z() * n.y()) };
+        g.seen_o = { dr::fmsub(o.x(), n.z(), o.z() * n.x()), dr::fmsub(o.y(), n.z(), o.z() * n.y()) };
+
+        T hx = T(i.x()) + T(o.x()), hy = T(i.y()) + T(o.y()), hz = T(i.z()) + T(o.z()), nx(n.x()), ny(n.y()), nz(n.z());
+        auto [h_u, h_c] = wind_frame(hx, hy);
+        auto [n_u, n_c] = wind_frame(nx, ny);
+        auto [x_u, x_c] = wind_frame(T(hx * nz - hz * nx), T(hy * nz - hz * ny));
+        auto measure = [&](const T &sine, const T &cosine) {
+            if (slope_measure)
+                return T(dr::select(cosine > S(0), sine / larger(cosine, S(Tiny)), S(1e6)));
+            return T(dr::atan2(sine, cosine));
+        };
+        g.tilt_u = measure(x_u, dr::fmadd(h_u, n_u, hz * nz));
+        g.tilt_c = measure(x_c, dr::fmadd(h_c, n_c, hz * nz));
+
+        Vector3f h = to_local(frame, i + o);
+        Float inv_h = dr::rcp(larger(h.z(), Small));
+        g.slope_u = h.x() * inv_h;
+        g.slope_c = h.y() * inv_h;
+        g.tan2_xi = dr::fmadd(g.slope_u, g.slope_u, g.slope_c * g.slope_c);
+        g.inv_cos2_xi = 1.f + g.tan2_xi;
     }
 
     static Float radius2(const Float &u) {
@@ -275,7 +355,7 @@ private:
     }
 
     /// f_SW, Eq. 56.
-    template <typename T> Float facets(const Geometry<T> &g, const Vector3f &i, const Vector3f &o) const {
+    template <typename T> Float facets(const Geometry<T> &g) const {
         namespace dr = drjit;
         // p/cos^4 xi (Eqs. 72-73, 78-79).
         using S = dr::scalar_t<T>;
@@ -309,7 +389,7 @@ private:
 
         // Eqs. 61-67, at least what the facets themselves hide where the bound is in force.
         Float rho = reflectance<T>(g.cos_zeta);
-        auto [area, over] = unshadowed(rho, g.cos_i, g.cos_o, [&] { return std::pair(spread(i), spread(o)); });
+        auto [area, over] = unshadowed(rho, g.cos_i, g.cos_o, [&] { return std::pair(spread(g.seen_i), spread(g.seen_o)); });
         return p * (rho * scale * over) / larger(area, Tiny);
     }
 
@@ -338,7 +418,7 @@ private:
     }
 
     /// sqrt(2) times the facets' standard deviation along v, times the sine.
-    Float spread(const Vector3f &v) const {
+    Float spread(const Point2f &v) const {
         namespace dr = drjit;
         auto [u, c] = wind_frame(v.x(), v.y());
         return dr::SqrtTwo<float> * dr::sqrt(dr::square(u * sigma_u) + dr::square(c * sigma_c));
@@ -436,8 +516,9 @@ private:
         return dr::fmadd(1.f - normal_reflectance, m2 * m2 * m, normal_reflectance);
     }
 
+public:
     /// rho of Schlick or of Fresnel's equations, to the digits of T.
-    template <typename T> Float reflectance(const Float &cos_zeta) const {
+    template <typename T = Float> Float reflectance(const Float &cos_zeta) const {
         namespace dr = drjit;
         if (!exact)
             return schlick(cos_zeta);
@@ -448,6 +529,7 @@ private:
         return Float(S(.5) * dr::fmadd(rs, rs, rp * rp));
     }
 
+private:
     /// Albedos, roughly, by which a lobe is chosen: of the facets and of the whitecaps.
     std::pair<Float, Float> albedos(const Float &cos) const {
         Float facets = (1.f - whitecap_fraction) * (schlick(cos) + FacetAlbedoFloor);

@@ -1,26 +1,47 @@
 #include "compatible.h"
 
 #include <mitsuba/core/properties.h>
+#include <mitsuba/core/warp.h>
 #include <mitsuba/render/bsdf.h>
+#include <mitsuba/render/texture.h>
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <sstream>
 
 #include "prob-water-mitsuba/src/lib.rs.h"
 #include "rust/cxx.h"
 
 #include "afar.h"
+#include "place.h"
+#include "sea.h"
 
 // The hot path of the scalar variants: the Rust core, called as plain C.
 extern "C" {
 struct ProbWaterSample {
     float direction[3];
     float pdf;
-    float f;
+    /// f cos(theta_o).
+    float value;
     bool whitecap;
 };
 static_assert(sizeof(ProbWaterSample) == 24, "as the core's Sample");
+struct ProbWaterPlace {
+    double place[2];
+    float footprint, whitecaps;
+};
+struct ProbWaterSpot {
+    alignas(16) unsigned char bytes[256];
+};
 float prob_water_bsdf_eval(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
 float prob_water_bsdf_pdf(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
 void prob_water_bsdf_sample(const prob_water::Water *, uint32_t parts, const float i[3], const float u[3],
+                            ProbWaterSample *sample);
+void prob_water_spot(const prob_water::Water *, const ProbWaterPlace *, ProbWaterSpot *);
+float prob_water_spot_whitecaps(const ProbWaterSpot *);
+float prob_water_spot_eval(const ProbWaterSpot *, uint32_t parts, const float i[3], const float o[3]);
+float prob_water_spot_pdf(const ProbWaterSpot *, uint32_t parts, const float i[3], const float o[3]);
+void prob_water_spot_sample(const ProbWaterSpot *, uint32_t parts, const float i[3], const float u[3],
                             ProbWaterSample *sample);
 }
 
@@ -62,19 +83,26 @@ Wind-roughened water (:monosp:`prob_water`)
 
  * - footprint
    - |float|
-   - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves. (Default: inf, or 0.15
-     where the surface is not flat)
+   - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves; a texture gives D from
+     place to place; the string "pixel" takes the pixel's footprint on the water where the integrator knows ray
+     differentials (:monosp:`direct` does, :monosp:`path` does not). (Default: inf, or 0.15 where the surface is not
+     flat)
    - |exposed|
 
  * - surface
    - |string|
-   - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives, or :monosp:`ensemble`, all
-     waves longer than two footprints that the wind may raise, on average: the sea from afar. (Default: flat)
+   - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives; :monosp:`instance`, on a
+     level shape, the waves longer than two footprints of one drawn sea; or :monosp:`ensemble`, all that the wind may
+     raise, on average: the sea from afar. (Default: flat)
 
- * - components, instances, seed, time, depth, fetch
+ * - components, seed, time, depth, fetch
    - |float|
-   - The vocabulary's words for drawn waves: components, depth and fetch matter to the ensemble; else they are
-     checked and have no effect.
+   - The vocabulary's words for drawn waves: how many there are, which, when (s), over which depth and fetch (m).
+     Components, depth and fetch matter to the ensemble as well. (Default: 5, 0, 0, inf, inf)
+
+ * - instances
+   - |int|
+   - Checked, and without effect: an instance is one, an ensemble all.
 
  * - wavelength
    - |float|
@@ -107,11 +135,18 @@ Wind-roughened water (:monosp:`prob_water`)
  * - whitecaps, shadowing, gram_charlier
    - |bool|
    - Whether whitecaps are blended in, the shadowing function and the skewness and kurtosis of
-     the slopes are applied. (Default: true)
+     the slopes are applied. :monosp:`whitecaps` may also be a texture of their probability, with a flat surface or an
+     instance. (Default: true)
+
+ * - water_leaving
+   - |spectrum| or |texture|
+   - Diffuse reflectance of the water below its surface, under what the surface reflects: the share of the light
+     entering the water that comes out again. (Default: none, black water)
 
 The sea as a renderer sees it from where single waves are not resolved: the water BRDF of the report
 AFRL-RH-FS-TR-2023-0002, facets with Cox and Munk's slopes, whitecaps between them. One-sided, black
-from below. It has two components: 0 the facets (glossy), 1 the whitecaps (diffuse), if there are any.
+from below. It has two components: 0 the facets (glossy), 1 the whitecaps and the light from below (diffuse), if there
+are any. An instance takes its x and y, in m, along the shading frame's s and t from the origin of the world.
 
 .. tabs::
     .. code-tab:: xml
@@ -130,40 +165,60 @@ from below. It has two components: 0 the facets (glossy), 1 the whitecaps (diffu
 
 */
 template <typename Float, typename Spectrum>
-class ProbWater final : public BSDF<Float, Spectrum> {
+class ProbWater final : public BSDF<Float, Spectrum>, public prob_water::TakesSea {
 public:
     MI_IMPORT_BASE(BSDF, m_flags, m_components)
-    MI_IMPORT_TYPES()
+    MI_IMPORT_TYPES(Texture)
 
     using Lobe = prob_water::Lobe<Float>;
     using Afar = prob_water::Afar<Float>;
+    using FacetTable = prob_water::FacetTable<Float>;
+    using Drawn = prob_water::Drawn<Float>;
     using Parts = prob_water::Parts;
+    using Wide = typename Lobe::Wide;
 
-    ProbWater(const Properties &props)
-        : Base(props), m_options(options(props)), m_water(refuse([&] { return m_options->configure(); })) {
-        for (const char *name : Exposed)
-            if (!std::isnan(m_water->number(name)))
-                m_exposed.emplace_back(name, 0.f);
-        apply();
+    ProbWater(const Properties &props) : Base(props), m_options(prob_water::options()) {
+        if (props.has_property("water_leaving"))
+            m_water_leaving = props.get_texture<Texture>("water_leaving");
+        take(props);
+        configure();
+    }
+
+    void take_sea(const Properties &sea) override {
+        // One sea is described once.
+        constexpr const char *Sea[] = { "wind_speed", "wind_height", "friction_velocity", "beaufort", "wind_direction",
+                                        "footprint", "surface", "components", "instances", "seed", "time", "depth",
+                                        "fetch", "water", "whitecaps" };
+        for (const std::string &name : m_given)
+            if (sea.has_property(name) || std::find(std::begin(Sea), std::end(Sea), name) != std::end(Sea))
+                Throw("prob_water: %s is given on the BSDF of a prob_water_surface: give it on the shape", name);
+        take(sea);
+        configure();
     }
 
     void traverse(TraversalCallback *cb) override {
         for (auto &[name, value] : m_exposed)
             cb->put(name, value, ParamFlags::NonDifferentiable);
+        if (m_footprint)
+            cb->put("footprint", m_footprint, ParamFlags::NonDifferentiable);
+        if (m_whitecap_texture)
+            cb->put("whitecaps", m_whitecap_texture, ParamFlags::NonDifferentiable);
+        if (m_water_leaving)
+            cb->put("water_leaving", m_water_leaving, ParamFlags::Differentiable);
     }
 
     void parameters_changed(const std::vector<std::string> & /*keys*/) override {
         try {
             refuse([&] {
                 for (auto &[name, value] : m_exposed)
-                    if (value != (ScalarFloat) m_water->number(name))
+                    if (value != (ScalarFloat) water().number(name))
                         m_options->set_number(name, value);
-                m_water = m_options->configure();
+                m_water.emplace(m_options->configure(varied()));
             });
         } catch (...) {
             // A refused value leaves the sea as it was.
             for (auto &[name, value] : m_exposed)
-                m_options->set_number(name, m_water->number(name));
+                m_options->set_number(name, water().number(name));
             apply();
             throw;
         }
@@ -174,99 +229,105 @@ public:
                                              const Point2f &sample2, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
 
-        BSDFSample3f bs = dr::zeros<BSDFSample3f>();
-        Parts parts = enabled(ctx);
         active &= Frame3f::cos_theta(si.wi) > 0.f;
-        if (unlikely(parts.none() || dr::none_or<false>(active)))
-            return { bs, 0.f };
-
-        Float weight;
-        Mask whitecap;
-        if constexpr (dr::is_jit_v<Float>) {
-            std::tie(bs.wo, whitecap) = m_lobe.sample(si.wi, sample1, sample2, parts);
-            // A weight divides two Gaussians: it needs no digits to spare.
-            auto g = m_lobe.template geometry<Float>(si.wi, bs.wo);
-            bs.pdf = m_lobe.pdf(g, si.wi, parts);
-            active &= bs.pdf > 0.f;
-            Float value = m_afar.rows ? m_afar.eval(m_lobe, si.wi, bs.wo, parts)
-                                      : m_lobe.eval(g, si.wi, bs.wo, parts);
-            weight = value / bs.pdf;
-        } else {
-            float u[3] = { sample1, sample2.x(), sample2.y() };
-            ProbWaterSample s{};
-            prob_water_bsdf_sample(&*m_water, parts.bits(), si.wi.data(), u, &s);
-            bs.wo = Vector3f(s.direction[0], s.direction[1], s.direction[2]);
-            bs.pdf = s.pdf;
-            whitecap = s.whitecap;
-            active &= s.pdf > 0.f;
-            weight = s.f * s.direction[2] / s.pdf;
-        }
-        bs.eta = 1.f;
-        bs.sampled_component = dr::select(whitecap, UInt32(1), UInt32(0));
-        bs.sampled_type = dr::select(whitecap, UInt32(+BSDFFlags::DiffuseReflection),
-                                     UInt32(+BSDFFlags::GlossyReflection));
-        return { bs, spectrum(weight) & active };
+        Enabled on = enabled(ctx);
+        if (unlikely(on.none() || dr::none_or<false>(active)))
+            return { dr::zeros<BSDFSample3f>(), 0.f };
+        return sample(on, here(si, active), si, sample1, sample2, active);
     }
 
     Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
                   Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
 
-        Parts parts = enabled(ctx);
-        if (unlikely(parts.none() || dr::none_or<false>(active)))
+        Enabled on = enabled(ctx);
+        if (unlikely(on.none() || dr::none_or<false>(active)))
             return 0.f;
-        if constexpr (dr::is_jit_v<Float>)
-            return spectrum(eval_pdf(si.wi, wo, parts, false).first) & active;
-        else
-            return spectrum(prob_water_bsdf_eval(&*m_water, parts.bits(), si.wi.data(), wo.data())) & active;
+        return eval_pdf<true, false>(on, here(si, active), si, wo, active).first;
     }
 
     Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
               Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
 
-        Parts parts = enabled(ctx);
-        if (unlikely(parts.none() || dr::none_or<false>(active)))
+        Enabled on = enabled(ctx);
+        if (unlikely(on.none() || dr::none_or<false>(active)))
             return 0.f;
-        if constexpr (dr::is_jit_v<Float>)
-            return dr::select(active, m_lobe.pdf(m_lobe.template geometry<Float>(si.wi, wo), si.wi, parts), 0.f);
-        else
-            return active ? prob_water_bsdf_pdf(&*m_water, parts.bits(), si.wi.data(), wo.data()) : 0.f;
+        return eval_pdf<false, true>(on, here(si, active), si, wo, active).second;
     }
 
     std::pair<Spectrum, Float> eval_pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
                                         Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
 
-        if constexpr (dr::is_jit_v<Float>) {
-            Parts parts = enabled(ctx);
-            if (parts.none())
-                return { 0.f, 0.f };
-            auto [value, pdf] = eval_pdf(si.wi, wo, parts, true);
-            return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
-        } else {
-            return { eval(ctx, si, wo, active), pdf(ctx, si, wo, active) };
-        }
+        Enabled on = enabled(ctx);
+        if (unlikely(on.none() || dr::none_or<false>(active)))
+            return { 0.f, 0.f };
+        return eval_pdf<true, true>(on, here(si, active), si, wo, active);
     }
 
-    Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f & /*si*/, Mask active) const override {
-        return spectrum(m_lobe.whitecap_fraction * m_lobe.whitecap_brdf * dr::Pi<ScalarFloat>) & active;
+    std::tuple<Spectrum, Float, BSDFSample3f, Spectrum>
+    eval_pdf_sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Float sample1,
+                    const Point2f &sample2, Mask active) const override {
+        MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
+
+        Enabled on = enabled(ctx);
+        if (unlikely(on.none() || dr::none_or<false>(active)))
+            return { 0.f, 0.f, dr::zeros<BSDFSample3f>(), 0.f };
+        Here at = here(si, active);
+        auto [value, pdf] = eval_pdf<true, true>(on, at, si, wo, active);
+        active &= Frame3f::cos_theta(si.wi) > 0.f;
+        auto [bs, weight] = sample(on, at, si, sample1, sample2, active);
+        return { value, pdf, bs, weight };
+    }
+
+    Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
+        Float whitecaps = whitecap_share(here(si, active));
+        UnpolarizedSpectrum diffuse = m_lobe.whitecap_brdf * dr::Pi<ScalarFloat> * whitecaps;
+        if (m_water_leaving)
+            diffuse += m_water_leaving->eval(si, active) * (1.f - whitecaps);
+        return depolarizer<Spectrum>(diffuse) & active;
     }
 
     std::string to_string() const override {
-        return "ProbWater[\n  " + string::indent(std::string(m_water->describe()), 2) + "\n]";
+        std::ostringstream text;
+        text << "ProbWater[\n  " << string::indent(std::string(water().describe()), 2);
+        if (!varied().empty())
+            text << "\n  # footprint = " << varied();
+        if (m_whitecap_texture)
+            text << "\n  # whitecaps = a texture";
+        if (m_water_leaving)
+            text << "\n  # water_leaving = " << string::indent(string::indent(m_water_leaving));
+        text << "\n]";
+        return text.str();
     }
 
     MI_DECLARE_CLASS(ProbWater)
 
 private:
-    /// Numbers that traverse() exposes, where they are set.
+    /// Numbers that traverse() exposes, where they are set and matter.
     static constexpr const char *Exposed[] = { "wind_speed", "wind_height", "friction_velocity", "beaufort",
-                                               "wind_direction", "footprint", "wavelength", "ior" };
+                                               "wind_direction", "footprint", "time", "wavelength", "ior" };
 
-    static Spectrum spectrum(const Float &value) {
-        return depolarizer<Spectrum>(UnpolarizedSpectrum(value));
-    }
+    /// The lobes that a context asks for, and whether light from below takes part.
+    struct Enabled {
+        Parts parts;
+        bool below;
+        bool none() const { return parts.none() && !below; }
+    };
+
+    /// The water at a place: for traced variants its lobe and wave normal; for scalar ones the core's, empty where all
+    /// places are alike.
+    struct TracedPlace {
+        Lobe lobe;
+        typename Lobe::Frame frame;
+    };
+    struct ScalarPlace {
+        ProbWaterSpot spot;
+    };
+    using Here = std::conditional_t<dr::is_jit_v<Float>, TracedPlace, ScalarPlace>;
+
+    static Spectrum spectrum(const UnpolarizedSpectrum &value) { return depolarizer<Spectrum>(value); }
 
     /// Runs a call into the core; its errors become Mitsuba's.
     template <typename Call> static auto refuse(Call call) {
@@ -277,80 +338,311 @@ private:
         }
     }
 
-    /// The parameters of the vocabulary that the scene gives.
-    static rust::Box<prob_water::Options> options(const Properties &props) {
-        return refuse([&] {
-            rust::Box<prob_water::Options> options = prob_water::options();
+    /// Takes over the parameters of the vocabulary that are given.
+    void take(const Properties &props) {
+        refuse([&] {
             for (const rust::String &word : prob_water::vocabulary()) {
                 std::string name(word);
                 if (!props.has_property(name))
                     continue;
+                m_given.push_back(name);
                 switch (props.type(name)) {
                     case Properties::Type::Bool:
-                        options->set_flag(name, props.get<bool>(name));
+                        m_options->set_flag(name, props.get<bool>(name));
                         break;
                     case Properties::Type::Integer:
-                        options->set_number(name, (double) props.get<int64_t>(name));
+                        m_options->set_number(name, (double) props.get<int64_t>(name));
                         break;
                     case Properties::Type::Float:
-                        options->set_number(name, props.get<double>(name));
+                        m_options->set_number(name, props.get<double>(name));
                         break;
-                    case Properties::Type::String:
-                        options->set_text(name, std::string(props.get<std::string_view>(name)));
+                    case Properties::Type::String: {
+                        std::string text(props.get<std::string_view>(name));
+                        m_pixel |= name == "footprint" && text == "pixel";
+                        if (name != "footprint" || !m_pixel)
+                            m_options->set_text(name, text);
                         break;
+                    }
                     default:
-                        Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
+                        if (name == "footprint")
+                            m_footprint = props.get_unbounded_texture<Texture>(name);
+                        else if (name == "whitecaps")
+                            m_whitecap_texture = props.get_texture<Texture>(name);
+                        else
+                            Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
                 }
             }
-            return options;
         });
+    }
+
+    const prob_water::Water &water() const { return **m_water; }
+
+    /// How the footprint changes from place to place; empty where it does not.
+    std::string varied() const { return m_pixel ? "pixel" : m_footprint ? "a texture" : ""; }
+
+    void configure() {
+        m_water.emplace(refuse([&] { return m_options->configure(varied()); }));
+        bool drawn = water().kind() == prob_water::Kind::Instance;
+        m_exposed.clear();
+        for (const std::string name : Exposed)
+            if (!std::isnan(water().number(name)) && (name != "footprint" || varied().empty()) &&
+                (name != "time" || drawn))
+                m_exposed.emplace_back(name, 0.f);
+        apply();
+        if (m_whitecap_texture && m_afar_only)
+            Throw("prob_water: whitecaps = a texture is out of range: allowed is true or false with surface = ensemble");
     }
 
     /// Takes over what the configured sea says.
     void apply() {
+        const prob_water::Water &water = this->water();
         for (auto &[name, value] : m_exposed)
-            value = (ScalarFloat) m_water->number(name);
+            value = (ScalarFloat) water.number(name);
 
-        prob_water::Coefficients c = m_water->coefficients();
-        m_whitecaps = c.whitecap_fraction > 0.f;
+        prob_water::Coefficients c = water.coefficients();
         m_lobe = Lobe(c);
-        if constexpr (dr::is_jit_v<Float>)
-            m_afar = Afar(m_water->waves());
+        m_own_footprint = (ScalarFloat) water.number("footprint");
+        prob_water::Kind kind = water.kind();
+        m_afar_only = kind == prob_water::Kind::Ensemble;
+        m_drawn_waves = kind == prob_water::Kind::Instance;
+        m_places = m_drawn_waves || m_whitecap_texture || !varied().empty();
+        if constexpr (dr::is_jit_v<Float>) {
+            m_afar = Afar(water.waves());
+            m_facets = FacetTable(water.facet_rows());
+            m_drawn = Drawn(water.drawn_waves());
+        }
+        m_whitecaps = m_whitecap_texture || (m_drawn_waves ? c.whitecaps : c.whitecap_fraction > 0.f);
 
         m_components.clear();
-        m_components.push_back(BSDFFlags::GlossyReflection | BSDFFlags::Anisotropic | BSDFFlags::FrontSide);
+        uint32_t where = +BSDFFlags::FrontSide;
+        if (m_places)
+            where |= +BSDFFlags::SpatiallyVarying;
+        if (m_pixel)
+            where |= +BSDFFlags::NeedsDifferentials;
+        m_components.push_back(BSDFFlags::GlossyReflection | BSDFFlags::Anisotropic | where);
         m_flags = m_components[0];
-        if (m_whitecaps) {
-            m_components.push_back(BSDFFlags::DiffuseReflection | BSDFFlags::FrontSide);
+        if (m_whitecaps || m_water_leaving) {
+            if (m_water_leaving)
+                where |= +BSDFFlags::SpatiallyVarying;
+            m_components.push_back(+BSDFFlags::DiffuseReflection | where);
             m_flags = m_flags | m_components[1];
         }
     }
 
-    /// Traced f cos(theta_o) and, if wanted, the density. Only Gram-Charlier's polynomial asks for digits to spare.
-    std::pair<Float, Float> eval_pdf(const Vector3f &wi, const Vector3f &wo, Parts parts, bool with_pdf) const {
-        auto run = [&](auto type) {
-            using T = decltype(type);
-            auto g = m_lobe.template geometry<T>(wi, wo);
-            return std::pair<Float, Float>(m_afar.rows ? m_afar.eval(m_lobe, wi, wo, parts)
-                                                       : m_lobe.template eval<T>(g, wi, wo, parts),
-                                           with_pdf ? m_lobe.pdf(g, wi, parts) : Float(0.f));
-        };
-        return m_lobe.gram_charlier && !m_afar.rows ? run(typename Lobe::Wide()) : run(Float());
+    Enabled enabled(const BSDFContext &ctx) const {
+        bool diffuse = m_components.size() > 1 && ctx.is_enabled(BSDFFlags::DiffuseReflection, 1);
+        return { { ctx.is_enabled(BSDFFlags::GlossyReflection, 0), m_whitecaps && diffuse }, m_water_leaving && diffuse };
     }
 
-    Parts enabled(const BSDFContext &ctx) const {
-        return { ctx.is_enabled(BSDFFlags::GlossyReflection, 0),
-                 m_whitecaps && ctx.is_enabled(BSDFFlags::DiffuseReflection, 1) };
+    /// The facets' footprint at a place.
+    Float footprint(const SurfaceInteraction3f &si, Mask active) const {
+        Float d;
+        if (m_pixel) {
+            // Of a square as large as the pixel on the water.
+            Vector3f x = dr::fmadd(si.dp_du, si.duv_dx.x(), si.dp_dv * si.duv_dx.y()),
+                     y = dr::fmadd(si.dp_du, si.duv_dy.x(), si.dp_dv * si.duv_dy.y());
+            d = dr::sqrt(dr::norm(dr::cross(x, y)));
+            d = dr::select(d > 0.f, d, m_own_footprint);
+        } else {
+            d = m_footprint->eval_1(si, active);
+        }
+        // Shorter waves than the sea's are not drawn.
+        return m_drawn_waves ? dr::maximum(d, m_own_footprint) : d;
+    }
+
+    Here here(const SurfaceInteraction3f &si, Mask active) const {
+        Here at;
+        if constexpr (dr::is_jit_v<Float>) {
+            at.lobe = m_lobe;
+            bool varies = !varied().empty();
+            Float d;
+            if (varies) {
+                d = footprint(si, active);
+                m_facets.set(at.lobe, d);
+            }
+            if (m_drawn_waves) {
+                auto along = [&](const Vector3f &v) {
+                    return dr::fmadd(Wide(v.x()), Wide(si.p.x()),
+                                     dr::fmadd(Wide(v.y()), Wide(si.p.y()), Wide(v.z()) * Wide(si.p.z())));
+                };
+                auto [n, whitecap] = m_drawn.at(along(si.sh_frame.s), along(si.sh_frame.t), varies ? &d : nullptr);
+                at.frame = at.lobe.frame(n);
+                if (m_whitecaps)
+                    at.lobe.whitecap_fraction = whitecap;
+            }
+            if (m_whitecap_texture)
+                at.lobe.whitecap_fraction = dr::clip(m_whitecap_texture->eval_1(si, active), 0.f, 1.f);
+        } else if (m_places) {
+            constexpr float None = std::numeric_limits<float>::quiet_NaN();
+            ProbWaterPlace place{ { 0., 0. }, None, None };
+            if (m_drawn_waves) {
+                auto along = [&](const Vector3f &v) {
+                    return (double) v.x() * si.p.x() + (double) v.y() * si.p.y() + (double) v.z() * si.p.z();
+                };
+                place.place[0] = along(si.sh_frame.s);
+                place.place[1] = along(si.sh_frame.t);
+            }
+            if (!varied().empty())
+                place.footprint = footprint(si, active);
+            if (m_whitecap_texture)
+                place.whitecaps = m_whitecap_texture->eval_1(si, active);
+            prob_water_spot(&water(), &place, &at.spot);
+        }
+        return at;
+    }
+
+    Float whitecap_share(const Here &at) const {
+        if constexpr (dr::is_jit_v<Float>)
+            return at.lobe.whitecap_fraction;
+        else
+            return m_places ? prob_water_spot_whitecaps(&at.spot) : m_lobe.whitecap_fraction;
+    }
+
+    /// f cos(theta_o) and density of facets and whitecaps, as far as wanted.
+    template <bool Value, bool Pdf>
+    std::pair<Float, Float> surface(const Here &at, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
+        if constexpr (dr::is_jit_v<Float>) {
+            auto run = [&](auto type) {
+                auto g = at.lobe.template geometry<decltype(type)>(wi, wo, at.frame);
+                Float value = 0.f, pdf = 0.f;
+                if (Value) {
+                    value = m_afar.rows ? m_afar.eval(at.lobe, wi, wo, parts) : at.lobe.eval(g, parts);
+                    if (!at.frame.level)
+                        value = dr::select(wi.z() > 0.f && wo.z() > 0.f,
+                                           value * g.cos_i / prob_water::larger(at.frame.n.z() * wi.z(), Lobe::Tiny), 0.f);
+                }
+                if (Pdf) {
+                    pdf = at.lobe.pdf(g, parts);
+                    if (!at.frame.level)
+                        pdf = dr::select(wo.z() > 0.f, pdf, 0.f);
+                }
+                return std::pair<Float, Float>(value, pdf);
+            };
+            // Only Gram-Charlier's polynomial asks for digits to spare.
+            return Value && m_lobe.gram_charlier && !m_afar.rows ? run(Wide()) : run(Float());
+        } else {
+            const prob_water::Water *sea = &water();
+            uint32_t bits = parts.bits();
+            if (m_places)
+                return { Value ? prob_water_spot_eval(&at.spot, bits, wi.data(), wo.data()) : 0.f,
+                         Pdf ? prob_water_spot_pdf(&at.spot, bits, wi.data(), wo.data()) : 0.f };
+            return { Value ? prob_water_bsdf_eval(sea, bits, wi.data(), wo.data()) : 0.f,
+                     Pdf ? prob_water_bsdf_pdf(sea, bits, wi.data(), wo.data()) : 0.f };
+        }
+    }
+
+    /// The same with the light from below.
+    template <bool Value, bool Pdf>
+    std::pair<Spectrum, Float> eval_pdf(Enabled on, const Here &at, const SurfaceInteraction3f &si, const Vector3f &wo,
+                                        Mask active) const {
+        auto [value, pdf] = surface<Value, Pdf>(at, si.wi, wo, on.parts);
+        if (!on.below)
+            return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
+        UnpolarizedSpectrum below = m_water_leaving->eval(si, active);
+        if (Pdf)
+            pdf = dr::lerp(pdf, cosine_pdf(si.wi, wo), below_share(on, at, si.wi, below));
+        return { spectrum(value + from_below(at, si.wi, wo, below)) & active, dr::select(active, pdf, 0.f) };
+    }
+
+    std::pair<BSDFSample3f, Spectrum> sample(Enabled on, const Here &at, const SurfaceInteraction3f &si, Float sample1,
+                                             const Point2f &sample2, Mask active) const {
+        BSDFSample3f bs = dr::zeros<BSDFSample3f>();
+        UnpolarizedSpectrum below = 0.f;
+        Float share = 0.f;
+        Mask diffuse = false;
+        if (on.below) {
+            below = m_water_leaving->eval(si, active);
+            share = below_share(on, at, si.wi, below);
+            diffuse = sample1 < share;
+            sample1 = dr::select(diffuse, 0.f, dr::minimum((sample1 - share) * dr::rcp(dr::maximum(1.f - share, Lobe::Small)),
+                                                           dr::OneMinusEpsilon<Float>));
+        }
+
+        Float value = 0.f;
+        Mask whitecap = false;
+        if (!on.parts.none()) {
+            if constexpr (dr::is_jit_v<Float>) {
+                std::tie(bs.wo, whitecap) = at.lobe.sample(si.wi, sample1, sample2, on.parts, at.frame);
+            } else {
+                float u[3] = { sample1, sample2.x(), sample2.y() };
+                ProbWaterSample s{};
+                if (m_places)
+                    prob_water_spot_sample(&at.spot, on.parts.bits(), si.wi.data(), u, &s);
+                else
+                    prob_water_bsdf_sample(&water(), on.parts.bits(), si.wi.data(), u, &s);
+                bs.wo = Vector3f(s.direction[0], s.direction[1], s.direction[2]);
+                bs.pdf = s.pdf;
+                value = s.value;
+                whitecap = s.whitecap;
+            }
+        }
+        if (on.below) {
+            Vector3f wo = warp::square_to_cosine_hemisphere(sample2);
+            bs.wo = dr::select(diffuse, wo, bs.wo);
+            auto [total, pdf] = eval_pdf<true, true>(on, at, si, bs.wo, active);
+            bs.pdf = pdf;
+            active &= bs.pdf > 0.f;
+            return finish(bs, total / bs.pdf, diffuse || whitecap, active);
+        }
+        if constexpr (dr::is_jit_v<Float>) {
+            // A weight divides two Gaussians: it needs no digits to spare.
+            auto g = at.lobe.template geometry<Float>(si.wi, bs.wo, at.frame);
+            bs.pdf = at.lobe.pdf(g, on.parts);
+            value = m_afar.rows ? m_afar.eval(at.lobe, si.wi, bs.wo, on.parts) : at.lobe.eval(g, on.parts);
+            if (!at.frame.level) {
+                value *= g.cos_i / prob_water::larger(at.frame.n.z() * si.wi.z(), Lobe::Tiny);
+                active &= bs.wo.z() > 0.f;
+                bs.pdf = dr::select(active, bs.pdf, 0.f);
+            }
+        }
+        active &= bs.pdf > 0.f;
+        return finish(bs, spectrum(value / bs.pdf), whitecap, active);
+    }
+
+    static std::pair<BSDFSample3f, Spectrum> finish(BSDFSample3f bs, const Spectrum &weight, Mask diffuse, Mask active) {
+        bs.eta = 1.f;
+        bs.sampled_component = dr::select(diffuse, UInt32(1), UInt32(0));
+        bs.sampled_type = dr::select(diffuse, UInt32(+BSDFFlags::DiffuseReflection),
+                                     UInt32(+BSDFFlags::GlossyReflection));
+        return { bs, weight & active };
+    }
+
+    /// f cos(theta_o) of the light from below: what level water lets in and out again.
+    UnpolarizedSpectrum from_below(const Here &at, const Vector3f &wi, const Vector3f &wo,
+                                   const UnpolarizedSpectrum &reflectance) const {
+        auto through = [&](const Float &cos) { return 1.f - m_lobe.reflectance(dr::clip(cos, 0.f, 1.f)); };
+        Float factor = through(wi.z()) * through(wo.z()) * (1.f - whitecap_share(at)) * cosine_pdf(wi, wo);
+        return reflectance * factor;
+    }
+
+    static Float cosine_pdf(const Vector3f &wi, const Vector3f &wo) {
+        return dr::select(wi.z() > 0.f, dr::maximum(wo.z(), 0.f) * dr::InvPi<Float>, 0.f);
+    }
+
+    /// The share of draws that go to the light from below: by what each reflects, roughly.
+    Float below_share(Enabled on, const Here &at, const Vector3f &wi, const UnpolarizedSpectrum &reflectance) const {
+        if (on.parts.none())
+            return 1.f;
+        Float rho = m_lobe.reflectance(dr::clip(wi.z(), 0.f, 1.f)), foam = whitecap_share(at),
+              below = dr::mean(reflectance) * (1.f - rho) * (1.f - foam),
+              rest = (on.parts.facets ? (1.f - foam) * (rho + Lobe::FacetAlbedoFloor) : Float(0.f)) +
+                     (on.parts.whitecaps ? foam * m_lobe.whitecap_brdf * dr::Pi<Float> : Float(0.f));
+        return below / dr::maximum(below + rest, Lobe::Small);
     }
 
     rust::Box<prob_water::Options> m_options;
-    rust::Box<prob_water::Water> m_water;
+    std::optional<rust::Box<prob_water::Water>> m_water;
+    std::vector<std::string> m_given;
     std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
-    bool m_whitecaps = false;
+    ref<Texture> m_footprint, m_whitecap_texture, m_water_leaving;
+    ScalarFloat m_own_footprint = 0.f;
+    bool m_pixel = false, m_whitecaps = false, m_afar_only = false, m_drawn_waves = false, m_places = false;
     Lobe m_lobe;
     Afar m_afar;
+    FacetTable m_facets;
+    Drawn m_drawn;
 
-    MI_TRAVERSE_CB(Base, m_lobe, m_afar)
+    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_lobe, m_afar, m_facets, m_drawn)
 };
 
 extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn fn) {

@@ -290,7 +290,7 @@ impl Lobe<f64> {
 
 /// `rho G (1 + Lambda)` up to which the bound is left out: Eq. 64 and Eqs. 76-77 differ by up to
 /// 1.105 even in a gale, where the albedo is far from 1.
-const BOUND_SLACK: f64 = 1.11;
+pub(crate) const BOUND_SLACK: f64 = 1.11;
 
 impl Facets<f64> {
     /// How far, in slope upwind and crosswind, a wave's slope may be from a facet's: a tilt's standard deviation there.

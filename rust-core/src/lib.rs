@@ -35,6 +35,8 @@
 //! | [`ensemble`] | section 7: statistics over drawn surfaces |
 //! | [`exact`] | the same for infinitely many, without draws |
 //! | [`EnsembleLobe`] | the BRDF of a wavy sea seen from afar |
+//! | [`InstanceLobe`] | that of one drawn sea, place by place |
+//! | [`FacetTable`] | facets where the footprint changes from place to place |
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
@@ -49,6 +51,8 @@ pub mod ensemble;
 pub mod ensemble_lobe;
 mod error;
 pub mod exact;
+mod facet_table;
+mod instance_lobe;
 pub mod optics;
 mod parameters;
 mod quadrature;
@@ -71,6 +75,8 @@ pub use ensemble::{Ensemble, Presence, Statistics};
 pub use ensemble_lobe::EnsembleLobe;
 pub use error::Error;
 pub use exact::Exact;
+pub use facet_table::FacetTable;
+pub use instance_lobe::InstanceLobe;
 pub use optics::Fresnel;
 pub use parameters::{Body, Parameters, Readings, Surface, Water};
 pub use real::Real;

@@ -208,7 +208,8 @@ impl Parameters {
         })
     }
 
-    fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
+    /// The facets of a wind, an index and slope variances.
+    pub(crate) fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
         let [sigma_u, sigma_c] = variances.map(f64::sqrt);
         let [c21, c03] = slopes::skewness(wind);
         let (sin_wind, cos_wind) = self.wind_direction.to_radians().sin_cos();

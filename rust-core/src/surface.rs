@@ -21,6 +21,8 @@ pub struct Surface {
     amplitude: Vec<[f64; LANES]>,
     /// omega, rad/s.
     frequency: Vec<[f64; LANES]>,
+    /// k, rad/m.
+    wave_number: Vec<[f64; LANES]>,
     /// No crest is higher (Eq. 42), m.
     highest: f64,
 }
@@ -67,16 +69,14 @@ impl Surface {
 
     /// Replaces the components, keeping the memory; the time is to be set afterwards.
     pub fn draw(&mut self, components: impl Iterator<Item = Component>) {
-        for array in [&mut self.k_x, &mut self.k_y, &mut self.psi, &mut self.amplitude, &mut self.frequency] {
+        for array in self.arrays() {
             array.clear();
         }
         let mut highest = 0.0;
         for (j, c) in components.enumerate() {
             let lane = j % LANES;
             if lane == 0 {
-                for array in
-                    [&mut self.k_x, &mut self.k_y, &mut self.psi, &mut self.amplitude, &mut self.frequency]
-                {
+                for array in self.arrays() {
                     array.push([0.0; LANES]);
                 }
             }
@@ -87,9 +87,22 @@ impl Surface {
             self.psi[at][lane] = c.phase;
             self.amplitude[at][lane] = c.amplitude;
             self.frequency[at][lane] = c.frequency;
+            self.wave_number[at][lane] = c.wave_number;
             highest += c.amplitude;
         }
         self.highest = highest;
+    }
+
+    /// What the components are kept in.
+    fn arrays(&mut self) -> [&mut Vec<[f64; LANES]>; 6] {
+        [
+            &mut self.k_x,
+            &mut self.k_y,
+            &mut self.psi,
+            &mut self.amplitude,
+            &mut self.frequency,
+            &mut self.wave_number,
+        ]
     }
 
     /// Moves the waves to a time in s.
@@ -132,8 +145,23 @@ impl Surface {
 
     /// Everything over a place in m.
     pub fn point(&self, place: [f64; 2]) -> Point {
+        self.total(place, |lanes| self.amplitude[lanes])
+    }
+
+    /// The same without the waves that are too short for a footprint in m ([`share`]).
+    pub fn point_within(&self, place: [f64; 2], footprint: f64) -> Point {
+        self.total(place, |lanes| {
+            let (a, k) = (&self.amplitude[lanes], &self.wave_number[lanes]);
+            std::array::from_fn(|l| if a[l] > 0.0 { a[l] * share(k[l], footprint).sqrt() } else { 0.0 })
+        })
+    }
+
+    /// The waves with these amplitudes, m, by lanes.
+    #[inline(always)]
+    fn total(&self, place: [f64; 2], amplitudes: impl Fn(usize) -> [f64; LANES]) -> Point {
         let mut point = Point { height: 0.0, slope: [0.0; 2], acceleration: 0.0 };
-        for (lanes, a) in self.amplitude.iter().enumerate() {
+        for lanes in 0..self.amplitude.len() {
+            let a = amplitudes(lanes);
             let (sin, cos) = sin_cos(self.phases(place, lanes));
             let (kx, ky, omega) = (&self.k_x[lanes], &self.k_y[lanes], &self.frequency[lanes]);
             point.height += sum(std::array::from_fn(|l| a[l] * cos[l]));

@@ -1,0 +1,64 @@
+//! The BRDF of a level surface that reflects, place by place, as one drawn sea does: `surface = "instance"`.
+
+use crate::brdf::Parts;
+use crate::ensemble::Ensemble;
+use crate::real::{Vec3, dot};
+use crate::surface::Surface;
+use crate::waves::Component;
+use crate::{Lobe, Real, Water};
+
+/// One drawn sea at one time, as the normals and whitecaps of a level surface.
+#[derive(Debug, Clone)]
+pub struct InstanceLobe {
+    water: Water,
+    surface: Surface,
+}
+
+/// The sea at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spot {
+    /// The wave normal.
+    pub normal: [f64; 3],
+    /// Probability of a whitecap (Eqs. 53-54).
+    pub whitecap: f64,
+}
+
+impl InstanceLobe {
+    /// The first of the seas that the seed draws, at the parameters' time.
+    pub fn new(water: &Water) -> Self {
+        let surface = Surface::new(Self::components(water).into_iter(), water.parameters.time);
+        Self { water: *water, surface }
+    }
+
+    /// The waves that make the sea.
+    pub fn components(water: &Water) -> Vec<Component> {
+        Ensemble::new(water).components(0).1.collect()
+    }
+
+    /// The sea at a place in m. With a footprint in m the waves too short for it are left to the facets.
+    pub fn spot(&self, place: [f64; 2], footprint: Option<f64>) -> Spot {
+        let point = match footprint {
+            None => self.surface.point(place),
+            Some(footprint) => self.surface.point_within(place, footprint),
+        };
+        Spot { normal: point.normal(), whitecap: self.water.whitecap_probability(point.acceleration) }
+    }
+
+    /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon.
+    pub fn eval(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2]) -> f64 {
+        let spot = self.spot(place, None);
+        let lobe = Lobe { whitecap_fraction: spot.whitecap, ..self.water.lobe };
+        lobe.on_wave(i, o, spot.normal, Parts::ALL)
+    }
+}
+
+impl<T: Real> Lobe<T> {
+    /// `f cos(theta_o)` of some of its parts, of a level surface whose waves have the normal `n` here:
+    /// `f_N (N.i)(N.o)/(N_z cos theta_i)`, 1/sr; 0 at or below the horizon.
+    pub fn on_wave(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>, parts: Parts) -> T {
+        let zero = T::of(0.0);
+        let seen = dot(i, n) * dot(o, n) / T::max(n[2] * i[2], T::TINY);
+        let value = T::min(self.eval_parts(i, o, n, parts) * T::max(seen, zero), T::MAX);
+        T::select(T::lt(zero, i[2]) & T::lt(zero, o[2]), value, zero)
+    }
+}
