@@ -411,7 +411,7 @@ private:
             m_facets = FacetTable(water.facet_rows());
             m_drawn = Drawn(water.drawn_waves());
         }
-        m_whitecaps = m_whitecap_texture || (m_drawn_waves ? c.whitecaps : c.whitecap_fraction > 0.f);
+        m_whitecaps = m_whitecap_texture || c.whitecaps;
 
         m_components.clear();
         uint32_t where = +BSDFFlags::FrontSide;

@@ -215,7 +215,10 @@ impl Water {
             shadowing: f.shadowing,
             bounded: f.bounded,
             as_printed: f.as_printed,
-            whitecaps: self.water.parameters.whitecaps,
+            whitecaps: match &self.waves {
+                Waves::Drawn(sea) => sea.has_whitecaps(),
+                _ => lobe.whitecap_fraction > 0.0,
+            },
             ierfc: IERFC,
         }
     }

@@ -44,6 +44,13 @@ impl InstanceLobe {
         Spot { normal: point.normal(), whitecap: self.water.whitecap_probability(point.acceleration) }
     }
 
+    /// Whether a whitecap can stand anywhere: none can where all crests together are not steep enough.
+    pub fn has_whitecaps(&self) -> bool {
+        let steepest: f64 =
+            Self::components(&self.water).iter().map(|c| c.amplitude * c.frequency * c.frequency).sum();
+        self.water.whitecap_probability(-steepest) > 0.0
+    }
+
     /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2]) -> f64 {
         let spot = self.spot(place, None);

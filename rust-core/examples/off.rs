@@ -1,0 +1,62 @@
+//! What is off costs nothing: the same evaluations by code that looks at the switches, and by code compiled without the
+//! feature. `validation/bench_off.py` counts their instructions.
+//!
+//! `cargo run --release -p prob-water --example off -- CASE switched|without COUNT`
+
+use prob_water::brdf::up;
+use prob_water::{Lobe, Parameters, Wind};
+use std::hint::black_box;
+
+/// The lobe with switches that the compiler knows.
+macro_rules! without {
+    ($lobe:expr, whitecaps) => {{
+        let mut lobe = $lobe;
+        lobe.whitecap_fraction = 0.0;
+        lobe
+    }};
+    ($lobe:expr, $switch:ident) => {{
+        let mut lobe = $lobe;
+        lobe.facets.$switch = false;
+        // A bound belongs to shadowing.
+        lobe.facets.bounded = false;
+        lobe
+    }};
+}
+
+fn run(count: usize, eval: impl Fn([f32; 3], [f32; 3]) -> f32) {
+    let mut total = 0.0;
+    for k in 0..count {
+        let t = k as f32 / count as f32;
+        let (i, o) =
+            ([0.6 * t, 0.0, (1.0 - 0.36 * t * t).sqrt()], [-0.5 * t, 0.1, (0.99 - 0.25 * t * t).sqrt()]);
+        total += eval(black_box(i), black_box(o));
+    }
+    black_box(total);
+}
+
+fn main() {
+    let arguments: Vec<_> = std::env::args().skip(1).collect();
+    let [case, code, count] = &arguments[..] else { panic!("CASE switched|without COUNT") };
+    let count = count.parse().expect("COUNT is a number");
+    // A wind in force whose bound is off.
+    let mut parameters = Parameters { wind: Wind::FrictionVelocity(24.0), ..Parameters::default() };
+    match case.as_str() {
+        "whitecaps" => parameters.whitecaps = false,
+        "no_wind_for_whitecaps" => parameters.wind = Wind::FrictionVelocity(0.0),
+        "shadowing" => parameters.shadowing = false,
+        "gram_charlier" => parameters.gram_charlier = false,
+        _ => panic!("{case}"),
+    }
+    let lobe: Lobe<f32> = black_box(parameters.configure().expect("the parameters are valid").lobe.cast());
+    if code == "switched" {
+        run(count, |i, o| lobe.eval(i, o, up()));
+        return;
+    }
+    match case.as_str() {
+        "whitecaps" | "no_wind_for_whitecaps" => {
+            run(count, |i, o| without!(lobe, whitecaps).eval(i, o, up()));
+        }
+        "shadowing" => run(count, |i, o| without!(lobe, shadowing).eval(i, o, up())),
+        _ => run(count, |i, o| without!(lobe, gram_charlier).eval(i, o, up())),
+    }
+}
