@@ -5,6 +5,7 @@ from pathlib import Path
 
 import mitsuba as mi
 
+from mitsuba_setup import SEA
 from review_set import PICTURES, Picture
 
 STYLE = """
@@ -20,9 +21,8 @@ dd { margin: 0; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 pre { overflow-x: auto; }
 """
 
-# Entries of an EXR's metadata that are shown as they are, then what is shown folded away.
+# Entries of an EXR's metadata that are shown as they are; the sea is shown folded away.
 FACTS = ["scene", "parameters", "size", "samples", "seconds", "variant", "rendered"]
-FOLDED = "water"
 
 
 def write_page(directory: Path, target: Path) -> None:
@@ -42,6 +42,7 @@ def card(picture: Picture, directory: Path) -> str:
     exr = mi.Bitmap(str(directory / f"{picture.name}.exr"))
     facts = exr.metadata()
     rows = "".join(f"<dt>{key}</dt><dd>{escape(str(facts[key]))}</dd>\n" for key in FACTS if key in facts)
+    sea = escape(str(facts[SEA])) if SEA in facts else "not in the file"
     width, height = exr.size()
     return (
         f"<article id='{picture.name}'>\n"
@@ -50,6 +51,6 @@ def card(picture: Picture, directory: Path) -> str:
         f"<h2>{escape(picture.title)}</h2>\n<p>{escape(picture.caption)}</p>\n<dl>\n{rows}"
         f"<dt>files</dt><dd><a href='{picture.name}.exr'>{picture.name}.exr</a> (linear), "
         f"<a href='{picture.name}.png'>{picture.name}.png</a></dd>\n</dl>\n"
-        f"<details><summary>the water in full</summary><pre>{escape(str(facts[FOLDED]))}</pre></details>\n"
+        f"<details><summary>the water in full</summary><pre>{sea}</pre></details>\n"
         "</article>\n"
     )

@@ -1,5 +1,6 @@
 """Mitsuba as the tests and renders here use it: which variant this machine can run, and the plugin."""
 
+import textwrap
 from pathlib import Path
 
 import drjit as dr
@@ -14,6 +15,9 @@ OLDEST_LLVM = 16
 INSTALL_LLVM = (
     "install LLVM 19 (Debian, Ubuntu: apt-get install libllvm19) or set DRJIT_LIBLLVM_PATH to a libLLVM.so"
 )
+
+# Of an EXR's metadata: the sea that it shows, as TOML. `prob-water --from` reads it.
+SEA = "prob_water"
 
 
 class SetupError(Exception):
@@ -54,3 +58,10 @@ def load_plugin(plugin_root: Path | str = PLUGIN_ROOT) -> None:
         raise SetupError(f"{library} is missing: run cargo xtask build")
     if str(plugin_root) not in map(str, mi.file_resolver()):
         mi.file_resolver().append(str(plugin_root))
+
+
+def sea_of(bsdf) -> str:
+    """The parameters in force of a ProbWater BSDF and what follows from them, as TOML."""
+    head, *lines, tail = str(bsdf).splitlines()
+    assert (head, tail) == ("ProbWater[", "]"), head
+    return textwrap.dedent("\n".join(lines)) + "\n"

@@ -16,7 +16,7 @@ import mitsuba as mi
 import numpy as np
 
 import gallery
-from mitsuba_setup import ROOT, SetupError, load_plugin, pick_variant
+from mitsuba_setup import ROOT, SEA, SetupError, load_plugin, pick_variant, sea_of
 from review_set import PICTURES, Picture
 from tone import to_bytes, tone_map
 
@@ -106,7 +106,9 @@ def render(picture: Picture, label: str, variant: str, quality: dict, out: Path)
     facts["variant"] = f"{variant}, Mitsuba {mi.__version__}"
     facts["rendered"] = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())
     bsdfs = [shape.bsdf() for shape in scene.shapes()]
-    facts[gallery.FOLDED] = "\n".join(str(bsdf) for bsdf in bsdfs if bsdf.class_name() == "ProbWater")
+    waters = [bsdf for bsdf in bsdfs if bsdf.class_name() == "ProbWater"]
+    if waters:
+        facts[SEA] = sea_of(waters[0])
     with replacing(out / f"{picture.name}.exr") as file:
         bitmap.write(str(file))
     write_png(out / f"{picture.name}.png", image)

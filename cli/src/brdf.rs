@@ -26,7 +26,7 @@ pub fn command() -> Command {
                 ),
         )
         .args(table::flags())
-        .args(parameters::flags(Surface::Flat))
+        .args(parameters::flags_and_from(Surface::Flat))
 }
 
 /// Checks every row, then writes them all with their `f`.

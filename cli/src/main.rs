@@ -3,7 +3,9 @@
 
 mod brdf;
 mod files;
+mod image;
 mod input;
+mod model;
 mod parameters;
 mod progress;
 mod scenario;

@@ -1,8 +1,14 @@
-//! The vocabulary of parameters as flags.
+//! The vocabulary of parameters as flags, and as a file that they stand above.
 
-use clap::{Arg, ArgMatches};
+use crate::image;
+use crate::model::Model;
+use crate::toml_file::Document;
+use clap::{Arg, ArgMatches, value_parser};
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
 use prob_water::{Surface, Water};
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
 
 /// One flag per parameter: its name with dashes, its unit and its default on a surface.
 pub fn flags(surface: Surface) -> impl Iterator<Item = Arg> {
@@ -18,6 +24,20 @@ pub fn flags(surface: Surface) -> impl Iterator<Item = Arg> {
     })
 }
 
+/// The flag that names a file with a sea.
+pub const FROM: &str = "from";
+
+/// The flags, and `--from` before them.
+pub fn flags_and_from(surface: Surface) -> impl Iterator<Item = Arg> {
+    let from = Arg::new(FROM)
+        .long(FROM)
+        .value_name("FILE")
+        .value_parser(value_parser!(PathBuf))
+        .help("the sea of a TOML file, a scenario or a rendered OpenEXR image; parameters given as flags stand above it")
+        .help_heading("Parameters");
+    [from].into_iter().chain(flags(surface))
+}
+
 /// The names of all flags, for what excludes them.
 pub fn names() -> impl Iterator<Item = &'static str> {
     ENTRIES.iter().map(|entry| entry.name)
@@ -28,20 +48,39 @@ pub fn given(matches: &ArgMatches) -> Vec<(&'static str, Value)> {
     names().filter_map(|name| Some((name, Value::Text(matches.get_one::<String>(name)?.clone())))).collect()
 }
 
-/// The sea that the flags describe.
-pub fn water(matches: &ArgMatches) -> Result<Water, String> {
-    build(Builder::default(), matches).map_err(|e| e.to_string())
-}
-
-/// The same, on one of the surfaces that a subcommand knows: the first unless told.
+/// The sea that flags and `--from` describe, on one of the surfaces that a subcommand knows: the first unless told.
 pub fn water_on(surfaces: &[Surface], matches: &ArgMatches) -> Result<Water, String> {
-    let water = build(Builder::on(surfaces[0]), matches).and_then(|water| water.on(surfaces));
-    water.map_err(|e| e.to_string())
+    let flags = given(matches);
+    match matches.get_one::<PathBuf>(FROM) {
+        Some(path) => {
+            let document = open(path)?;
+            let root = document.parse()?;
+            Model::alone(&document, &root)?.for_surface(&flags, surfaces)?.water(&flags, surfaces)
+        }
+        None => build(Builder::on(surfaces[0]), &flags)
+            .and_then(|water| water.on(surfaces))
+            .map_err(|e| e.to_string()),
+    }
 }
 
-fn build(mut builder: Builder, matches: &ArgMatches) -> Result<Water, prob_water::Error> {
-    for (name, value) in given(matches) {
-        builder.set(name, &value)?;
+fn build(mut builder: Builder, flags: &[(&'static str, Value)]) -> Result<Water, prob_water::Error> {
+    for (name, value) in flags {
+        builder.set(name, value)?;
     }
     builder.parameters()?.configure()
+}
+
+/// The text of a file, or of a rendered image's attribute.
+fn open(path: &Path) -> Result<Document, String> {
+    let name = path.display().to_string();
+    let refuse = |e: std::io::Error| format!("{name}: cannot be read: {e}");
+    let mut file = BufReader::new(File::open(path).map_err(refuse)?);
+    let mut start = Vec::new();
+    file.by_ref().take(image::MAGIC.len() as u64).read_to_end(&mut start).map_err(refuse)?;
+    if start == image::MAGIC {
+        let text = image::sea(start.as_slice().chain(file)).map_err(|e| format!("{name}: {e}"))?;
+        return Document::new(format!("{name}: {}", image::ATTRIBUTE), text);
+    }
+    file.read_to_end(&mut start).map_err(refuse)?;
+    Document::new(name, start)
 }

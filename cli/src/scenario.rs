@@ -2,8 +2,7 @@
 
 mod engagement;
 mod file;
-mod model;
-mod settings;
+pub mod settings;
 mod tables;
 
 use crate::progress::Progress;

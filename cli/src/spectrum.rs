@@ -30,7 +30,7 @@ pub fn command() -> Command {
                 .help("these wave numbers instead, above 0, separated by commas"),
         )
         .args(table::flags())
-        .args(parameters::flags(Surface::Instance))
+        .args(parameters::flags_and_from(Surface::Instance))
 }
 
 fn wave_number(text: &str) -> Result<f64, String> {

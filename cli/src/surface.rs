@@ -52,7 +52,7 @@ pub fn command() -> Command {
                 .help("which of the seas that the seed draws"),
         )
         .args(table::flags())
-        .args(parameters::flags(Surface::Instance))
+        .args(parameters::flags_and_from(Surface::Instance))
 }
 
 /// Points of a grid, row by row along x.

@@ -18,6 +18,11 @@ impl Document {
     pub fn read(path: &Path) -> Result<Self, String> {
         let name = path.display().to_string();
         let bytes = fs::read(path).map_err(|e| format!("cannot read {name}: {e}"))?;
+        Self::new(name, bytes)
+    }
+
+    /// Text from wherever its name says.
+    pub fn new(name: String, bytes: Vec<u8>) -> Result<Self, String> {
         match String::from_utf8(bytes) {
             Ok(text) => Ok(Self { name, text }),
             Err(error) => {

@@ -14,11 +14,11 @@ pub fn command() -> Command {
             Arg::new("table")
                 .long("table")
                 .action(ArgAction::SetTrue)
-                .conflicts_with_all(parameters::names())
+                .conflicts_with_all(parameters::names().chain([parameters::FROM]))
                 .help("write the report's Table 1 instead: solved and printed friction velocities"),
         )
         .args(table::flags())
-        .args(parameters::flags(Surface::Flat))
+        .args(parameters::flags_and_from(Surface::Flat))
 }
 
 /// One row for the given parameters, or all of Table 1.
@@ -41,7 +41,7 @@ const ROW: [&str; 11] = [
 ];
 
 fn row(matches: &ArgMatches) -> Outcome {
-    let water = parameters::water(matches)?;
+    let water = parameters::water_on(&[Surface::Flat, Surface::Instance, Surface::Ensemble], matches)?;
     let wind = &water.wind;
     let beaufort = wind.beaufort();
     let mut out = Table::new(matches, ROW)?;

@@ -193,18 +193,27 @@ impl Water {
     }
 }
 
-/// The parameters in force, a `name = value` a line, and what follows from them.
+/// The parameters in force as TOML, a `name = value` a line, and as comments what follows from them.
 impl std::fmt::Display for Water {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for entry in &ENTRIES {
-            if let Some(value) = self.parameters.get(entry.name) {
-                writeln!(f, "{} = {value}", entry.name)?;
+            match self.parameters.get(entry.name) {
+                Some(Value::Number(x)) => writeln!(f, "{} = {}", entry.name, toml_number(x))?,
+                Some(Value::Flag(x)) => writeln!(f, "{} = {x}", entry.name)?,
+                Some(Value::Text(word)) => writeln!(f, "{} = \"{word}\"", entry.name)?,
+                None => {}
             }
         }
-        writeln!(f, "[friction_velocity_cm_s = {}]", self.wind.friction_velocity)?;
-        writeln!(f, "[sigma_u2 = {:.6}, sigma_c2 = {:.6}]", self.variances[0], self.variances[1])?;
-        write!(f, "[whitecap_fraction = {:.6}, ior = {:.6}]", self.whitecap_fraction, self.ior)
+        writeln!(f, "# friction_velocity = {} cm/s", self.wind.friction_velocity)?;
+        writeln!(f, "# sigma_u2 = {:.6}, sigma_c2 = {:.6}", self.variances[0], self.variances[1])?;
+        write!(f, "# whitecap_fraction = {:.6}, ior = {:.6}", self.whitecap_fraction, self.ior)
     }
+}
+
+/// Digits that TOML reads back to the same number: an integer only where it fits TOML's.
+fn toml_number(x: f64) -> String {
+    let integer = x.fract() == 0.0 && x.abs() < 1e15 && !(x == 0.0 && x.is_sign_negative());
+    if integer { format!("{x}") } else { format!("{x:?}") }
 }
 
 /// Fills [`Parameters`] from named values; what is not named keeps its default.
@@ -355,6 +364,72 @@ mod tests {
                 assert_eq!(p.get(name), Some(value.clone()));
             }
         }
+    }
+
+    /// A reader of no more TOML than is written.
+    fn read(text: &str) -> Parameters {
+        let mut builder = Builder::default();
+        for line in text.lines().filter(|line| !line.starts_with('#')) {
+            let (name, value) = line.split_once(" = ").unwrap();
+            let value = match value.strip_prefix('"') {
+                Some(word) => Value::Text(word.strip_suffix('"').unwrap().into()),
+                None => match value.parse() {
+                    Ok(flag) => Value::Flag(flag),
+                    Err(_) => Value::Number(value.parse().unwrap()),
+                },
+            };
+            builder.set(name, &value).unwrap();
+        }
+        builder.parameters().unwrap()
+    }
+
+    #[test]
+    fn what_is_shown_can_be_read() {
+        let winds =
+            [Wind::Speed { speed: 7.1, height: 19.5 }, Wind::FrictionVelocity(0.1 + 0.2), Wind::Beaufort(4)];
+        let mut named = std::collections::BTreeSet::new();
+        for wind in winds {
+            let given = Parameters {
+                wind,
+                wind_direction: -1.0 / 3.0,
+                footprint: 1e-7,
+                surface: Surface::Instance,
+                components: 20,
+                instances: 1_000_000,
+                seed: 9_007_199_254_740_991,
+                time: -0.0,
+                depth: 1e23,
+                fetch: 5e15,
+                wavelength: 1.064,
+                ior: Some(4.0 / 3.0),
+                water: Body::Fresh,
+                fresnel: Fresnel::Exact,
+                slope_measure: SlopeMeasure::Slope,
+                readings: Readings::AsPrinted,
+                whitecaps: false,
+                shadowing: false,
+                gram_charlier: false,
+            };
+            let text = given.configure().unwrap().to_string();
+            let found = read(&text);
+            named.extend(ENTRIES.iter().filter_map(|entry| {
+                assert_eq!(found.get(entry.name), given.get(entry.name));
+                given.get(entry.name).map(|_| entry.name)
+            }));
+            assert!(found.time.is_sign_negative() && found.configure().unwrap().to_string() == text);
+            // Whole numbers without a point must fit TOML's integers.
+            assert!(text.contains("\ndepth = 1e23\n") && text.contains("\ncomponents = 20\n"), "{text}");
+        }
+        assert_eq!(named.len(), ENTRIES.len());
+        let text = Parameters::default().configure().unwrap().to_string();
+        assert!(
+            text.contains("\nfootprint = inf\nsurface = \"flat\"\n") && !text.contains("\nior"),
+            "{text}"
+        );
+        assert!(
+            text.contains("\n# friction_velocity = ") && text.contains("\n# whitecap_fraction = "),
+            "{text}"
+        );
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! A scenario file: the sea, what is asked about it, and the engagements.
 
 use super::engagement;
-use super::model::{Flag, Model};
 use super::settings::{self, Settings};
+use crate::model::{Flag, Model};
 use crate::toml_file::Document;
 use prob_water::exact::Exact;
-use prob_water::{Draws, Engagement, Ensemble, Water};
+use prob_water::{Draws, Engagement, Ensemble, Surface, Water};
 use std::path::Path;
 
 /// What a file describes; checked.
@@ -59,7 +59,7 @@ impl Scenario {
             return Err(document.refuse(0, "[[engagement]] is missing"));
         }
         let settings = Settings::read(&own)?;
-        let water = model.water(flags)?;
+        let water = model.water(flags, &[Surface::Instance])?;
         let mut engagements = Vec::new();
         // Of every engagement, where it stands.
         let mut places = Vec::new();

@@ -1,5 +1,7 @@
-//! Every example of the guide, with the output it shows.
+//! Every example of the guide, with the output it shows. `render.exr`, which some read, shows a flat sea in a Beaufort 4.
 
+use crate::from::{image, text};
+use prob_water::{Parameters, Wind};
 use std::path::Path;
 use std::process::Command;
 
@@ -8,6 +10,8 @@ fn examples_give_what_they_show() {
     let guide = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/guide-command.md");
     let guide = std::fs::read_to_string(guide).unwrap();
     let folder = tempfile::tempdir().unwrap();
+    let sea = Parameters { wind: Wind::Beaufort(4), wind_direction: -30.0, ..Default::default() };
+    image(&folder.path().join("render.exr"), &[("prob_water", text(&sea.configure().unwrap().to_string()))]);
     let binaries = Path::new(env!("CARGO_BIN_EXE_prob-water")).parent().unwrap().display();
     let path = format!("{binaries}:{}", std::env::var("PATH").unwrap());
     let mut examples = 0;

@@ -2,6 +2,7 @@
 
 mod brdf;
 mod files;
+mod from;
 #[cfg(unix)]
 mod guide;
 mod refusals;
