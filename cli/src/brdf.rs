@@ -7,7 +7,8 @@ use crate::{Outcome, parameters};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use csv::ByteRecord;
 use prob_water::batch::Rows;
-use prob_water::{EnsembleLobe, Error, Surface};
+use prob_water::scenario::FARTHEST;
+use prob_water::{EnsembleLobe, Error, InstanceLobe, Surface};
 use std::path::PathBuf;
 
 /// The subcommand's flags.
@@ -22,7 +23,8 @@ pub fn command() -> Command {
                 .hide_default_value(true)
                 .help(
                     "CSV with header ix,iy,iz,ox,oy,oz (unit vectors to source and observer, z up) \
-                     and optionally nx,ny,nz (facing normals); - is standard input [default: -]",
+                     and optionally nx,ny,nz (facing normals); with --surface instance also x,y (m); \
+                     - is standard input [default: -]",
                 ),
         )
         .args(table::flags())
@@ -31,26 +33,38 @@ pub fn command() -> Command {
 
 /// Checks every row, then writes them all with their `f`.
 pub fn run(matches: &ArgMatches) -> Outcome {
-    let water = parameters::water_on(&[Surface::Flat, Surface::Ensemble], matches)?;
+    let water = parameters::water_on(&[Surface::Flat, Surface::Instance, Surface::Ensemble], matches)?;
+    let drawn = water.parameters.surface == Surface::Instance;
+    let columns = if drawn { &PLACES } else { &COLUMNS };
     let input = input::read(matches.get_one::<PathBuf>("input").expect("has a default"))?;
     let half = input.len() as u64;
     let progress = Progress::new(2 * half, table::to_file(matches));
 
-    let directions = Directions::parse(&input, |byte| progress.at(byte))?;
+    let directions = Directions::parse(columns, &input, |byte| progress.at(byte))?;
     let mut f = vec![0.0; directions.vectors[0].len()];
-    let rows = directions.rows()?;
-    if water.parameters.surface == Surface::Ensemble {
-        if directions.with_normals() {
-            return Err("normals have no meaning with surface = ensemble".to_owned().into());
+    let rows = directions.rows(drawn)?;
+    match water.parameters.surface {
+        Surface::Flat => rows.eval(&water.lobe, &mut f)?,
+        Surface::Instance => {
+            let lobe = InstanceLobe::new(&water);
+            rows.each(&mut f, |row, i, o, _| {
+                let [x, y, _] = directions.vectors[2][row];
+                // The lobe's value has the cosine that whoever integrates f adds.
+                let seen = lobe.eval(i, o, [x, y]);
+                if seen > 0.0 { seen / o[2] } else { 0.0 }
+            })?;
         }
-        let lobe = EnsembleLobe::new(&water)?;
-        rows.each(&mut f, |i, o, _| lobe.eval(i, o))?;
-    } else {
-        rows.eval(&water.lobe, &mut f)?;
+        Surface::Ensemble => {
+            if directions.with_normals() {
+                return Err("normals have no meaning with surface = ensemble".to_owned().into());
+            }
+            let lobe = EnsembleLobe::new(&water)?;
+            rows.each(&mut f, |_, i, o, _| lobe.eval(i, o))?;
+        }
     }
 
-    let columns = directions.columns.iter().map(|c| COLUMNS.known[*c]).chain(["f"]);
-    let mut out = Table::new(matches, columns)?;
+    let names = directions.columns.iter().map(|c| columns.known[*c]).chain(["f"]);
+    let mut out = Table::new(matches, names)?;
     let mut reader = input::reader(&input);
     let mut record = ByteRecord::new();
     for (row, f) in f.iter().enumerate() {
@@ -74,19 +88,31 @@ const COLUMNS: Columns = Columns {
     expected: "expected ix,iy,iz,ox,oy,oz and optionally nx,ny,nz",
 };
 
-/// The directions of a file: to the source, to the observer and, where given, the normals.
+/// On a drawn sea: directions and places, m.
+const PLACES: Columns = Columns {
+    known: &["ix", "iy", "iz", "ox", "oy", "oz", "x", "y"],
+    needed: |_| 8,
+    expected: "expected ix,iy,iz,ox,oy,oz,x,y",
+};
+
+/// The directions of a file: to the source, to the observer and, where given, the normals, or the places.
 struct Directions {
-    /// For every field of a row its place in [`COLUMNS`].
+    /// For every field of a row its place among the known columns.
     columns: Vec<usize>,
     vectors: [Vec<[f64; 3]>; 3],
 }
 
 impl Directions {
-    fn parse(input: &[u8], progress: impl Fn(u64)) -> Result<Self, String> {
+    fn parse(known: &Columns, input: &[u8], progress: impl Fn(u64)) -> Result<Self, String> {
         let mut vectors = [vec![], vec![], vec![]];
-        let columns = COLUMNS.parse(input, progress, |values| {
-            for (vectors, value) in vectors.iter_mut().zip(values.chunks_exact(3)) {
-                vectors.push([value[0], value[1], value[2]]);
+        let columns = known.parse(input, progress, |values| {
+            for (vectors, value) in vectors.iter_mut().zip(values.chunks(3)) {
+                let [x, y] = [value[0], value[1]];
+                match value.get(2) {
+                    Some(z) => vectors.push([x, y, *z]),
+                    None if x.abs() <= FARTHEST && y.abs() <= FARTHEST => vectors.push([x, y, 0.0]),
+                    None => return Err(format!("x,y = {x},{y}: allowed is at most {FARTHEST:e} m from 0")),
+                }
             }
             Ok(())
         })?;
@@ -98,9 +124,9 @@ impl Directions {
     }
 
     /// All rows, checked; what is refused is named by the file's columns.
-    fn rows(&self) -> Result<Rows<'_, f64>, Error> {
+    fn rows(&self, drawn: bool) -> Result<Rows<'_, f64>, Error> {
         let [source, observer, normals] = &self.vectors;
-        let normals = self.with_normals().then_some(normals.as_slice());
+        let normals = (self.with_normals() && !drawn).then_some(normals.as_slice());
         Rows::new(source, observer, normals).map_err(|error| match error {
             Error::Row { row, column, x, y, z, expected } => {
                 let column = match column {

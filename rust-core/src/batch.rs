@@ -35,22 +35,26 @@ impl<'a, T: Real> Rows<'a, T> {
 
     /// Writes f, 1/sr, of every row.
     pub fn eval(&self, lobe: &Lobe<T>, f: &mut [T]) -> Result<(), Error> {
-        self.each(f, |i, o, n| lobe.eval(i, o, n))
+        self.each(f, |_, i, o, n| lobe.eval(i, o, n))
     }
 
-    /// Writes a value of every row: of its directions to source and observer and its normal.
-    pub fn each(&self, out: &mut [T], value: impl Fn(Vec3<T>, Vec3<T>, Vec3<T>) -> T) -> Result<(), Error> {
+    /// Writes a value of every row: of its number from 0, its directions to source and observer and its normal.
+    pub fn each(
+        &self,
+        out: &mut [T],
+        value: impl Fn(usize, Vec3<T>, Vec3<T>, Vec3<T>) -> T,
+    ) -> Result<(), Error> {
         same_length("the output", out.len(), self.to_source.len())?;
         for (row, out) in out.iter_mut().enumerate() {
             let n = self.normals.map_or_else(up, |n| n[row]);
-            *out = value(self.to_source[row], self.to_observer[row], n);
+            *out = value(row, self.to_source[row], self.to_observer[row], n);
         }
         Ok(())
     }
 
     /// Writes the density, 1/sr, with which [`Lobe::sample`] draws every row's observer.
     pub fn pdf(&self, lobe: &Lobe<T>, pdf: &mut [T]) -> Result<(), Error> {
-        self.each(pdf, |i, o, n| lobe.pdf(i, o, n))
+        self.each(pdf, |_, i, o, n| lobe.pdf(i, o, n))
     }
 }
 

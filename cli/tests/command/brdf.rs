@@ -90,3 +90,26 @@ fn the_sea_from_afar() {
     let with_normals = "ix,iy,iz,ox,oy,oz,nx,ny,nz\n0,0,1,0,0,1,0,0,1\n";
     assert!(refuse("brdf --surface ensemble", with_normals).contains("normals"));
 }
+
+/// On one drawn sea: the wave normal and the whitecaps of the place, as `surface` has them.
+#[test]
+fn a_place_of_a_drawn_sea() {
+    let sea = "--wind-speed 9 --seed 4 --time 2.5 --whitecaps false";
+    let places = ["3,4", "-70.5,12"];
+    let surface = succeed(&format!("surface {sea} --points -"), &format!("x,y\n{}\n", places.join("\n")));
+    for (place, point) in places.into_iter().zip(&table(&surface)[1..]) {
+        let [nx, ny, nz] = [6, 7, 8].map(|column| float(point[column]));
+        let (i, o) = ([0.6, 0.0, 0.8], [-0.48, 0.36, 0.8]);
+        let with_normal = format!("ix,iy,iz,ox,oy,oz,nx,ny,nz\n0.6,0,0.8,-0.48,0.36,0.8,{nx},{ny},{nz}\n");
+        let about = succeed("brdf --wind-speed 9 --footprint 0.15 --whitecaps false", &with_normal);
+        let dot = |v: [f64; 3]| v[0] * nx + v[1] * ny + v[2] * nz;
+        let f = float(table(&about)[1][9]) * dot(i) * dot(o) / (nz * i[2] * o[2]);
+        let input = format!("x,y,ix,iy,iz,ox,oy,oz\n{place},0.6,0,0.8,-0.48,0.36,0.8\n");
+        let found = succeed(&format!("brdf --surface instance {sea}"), &input);
+        assert!((float(table(&found)[1][8]) / f - 1.0).abs() < 1e-9, "{found} {f}");
+    }
+    let no_place = refuse("brdf --surface instance", "ix,iy,iz,ox,oy,oz\n0,0,1,0,0,1\n");
+    assert!(no_place.contains("column x is missing"), "{no_place}");
+    let nowhere = refuse("brdf --surface instance", "ix,iy,iz,ox,oy,oz,x,y\n0,0,1,0,0,1,nan,0\n");
+    assert!(nowhere.contains("row 1") && nowhere.contains("x,y = NaN,0"), "{nowhere}");
+}
