@@ -72,7 +72,7 @@ pub use ensemble_lobe::EnsembleLobe;
 pub use error::Error;
 pub use exact::Exact;
 pub use optics::Fresnel;
-pub use parameters::{Body, Parameters, Readings, Surface, Water};
+pub use parameters::{Average, Body, Parameters, Readings, Surface, Water};
 pub use real::Real;
 pub use sampling::Sample;
 pub use scenario::{Aim, Engagement};
