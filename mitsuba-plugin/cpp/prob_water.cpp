@@ -71,6 +71,11 @@ Wind-roughened water (:monosp:`prob_water`)
    - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives, or :monosp:`ensemble`, all
      waves longer than two footprints that the wind may raise, on average: the sea from afar. (Default: flat)
 
+ * - average
+   - |string|
+   - What the ensemble's average is of: :monosp:`power`, reciprocal, or the :monosp:`report`'s mean of f times the flat
+     cosine. No effect on the flat surface. (Default: power)
+
  * - components, instances, seed, time, depth, fetch
    - |float|
    - The vocabulary's words for drawn waves: components, depth and fetch matter to the ensemble; else they are

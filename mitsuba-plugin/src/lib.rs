@@ -3,7 +3,7 @@
 use prob_water::brdf::{Parts, up};
 use prob_water::real::IERFC;
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
-use prob_water::{EnsembleLobe, Error, Lobe, Sample, Surface};
+use prob_water::{Average, EnsembleLobe, Error, Lobe, Sample, Surface};
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
@@ -42,6 +42,8 @@ mod ffi {
         cells: Vec<f32>,
         sigma: [f32; 2],
         foam: [f32; 3],
+        /// `average = "report"`.
+        report: bool,
     }
 
     extern "Rust" {
@@ -149,8 +151,16 @@ impl Water {
                 cells: t.cells,
                 sigma: t.sigma.map(single),
                 foam: t.foam.map(single),
+                report: t.average == Average::Report,
             },
-            None => ffi::Waves { rows: 0, steps: [0.0; 2], cells: vec![], sigma: [0.0; 2], foam: [0.0; 3] },
+            None => ffi::Waves {
+                rows: 0,
+                steps: [0.0; 2],
+                cells: vec![],
+                sigma: [0.0; 2],
+                foam: [0.0; 3],
+                report: false,
+            },
         }
     }
 
