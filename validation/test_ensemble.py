@@ -19,6 +19,9 @@ SEAS = [
     {"friction_velocity": 56.0, "components": 20, "shadowing": False},
     {"friction_velocity": 120.0, "wind_direction": -100.0},
     {"friction_velocity": 0.3},
+    {"friction_velocity": 8.0, "wind_direction": 35.0, "average": "report"},
+    {"friction_velocity": 24.0, "footprint": 0.5, "slope_measure": "slope", "average": "report"},
+    {"friction_velocity": 56.0, "wind_direction": -100.0, "average": "report"},
 ]
 SEA_NAMES = ["-".join(map(str, sea.values())) for sea in SEAS]
 

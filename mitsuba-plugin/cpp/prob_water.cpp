@@ -95,6 +95,11 @@ Wind-roughened water (:monosp:`prob_water`)
      level shape, the waves longer than two footprints of one drawn sea; or :monosp:`ensemble`, all that the wind may
      raise, on average: the sea from afar. (Default: flat)
 
+ * - average
+   - |string|
+   - What the ensemble's average is of: :monosp:`power`, reciprocal, or the :monosp:`report`'s mean of f times the flat
+     cosine. No effect on the flat surface. (Default: power)
+
  * - components, seed, time, depth, fetch
    - |float|
    - The vocabulary's words for drawn waves: how many there are, which, when (s), over which depth and fetch (m).

@@ -3,7 +3,7 @@
 use prob_water::brdf::{Parts, up};
 use prob_water::real::IERFC;
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
-use prob_water::{EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Sample, Surface, whitecap};
+use prob_water::{Average, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Sample, Surface, whitecap};
 use std::f64::consts::{PI, TAU};
 
 #[cxx::bridge(namespace = "prob_water")]
@@ -52,6 +52,8 @@ mod ffi {
         cells: Vec<f32>,
         sigma: [f32; 2],
         foam: [f32; 3],
+        /// `average = "report"`.
+        report: bool,
     }
 
     /// What `prob_water::FacetTable` holds, where the footprint changes from place to place; else no cells.
@@ -233,8 +235,16 @@ impl Water {
                 cells: t.cells,
                 sigma: t.sigma.map(single),
                 foam: t.foam.map(single),
+                report: t.average == Average::Report,
             },
-            None => ffi::Waves { rows: 0, steps: [0.0; 2], cells: vec![], sigma: [0.0; 2], foam: [0.0; 3] },
+            None => ffi::Waves {
+                rows: 0,
+                steps: [0.0; 2],
+                cells: vec![],
+                sigma: [0.0; 2],
+                foam: [0.0; 3],
+                report: false,
+            },
         }
     }
 

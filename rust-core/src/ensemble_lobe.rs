@@ -11,15 +11,19 @@
 //! directions apart from H. So the integral is a table over H, of the density D of facets on all waves, times a mean of
 //! the shadowing over the waves that carry them. Those waves' slopes have a mean and a variance, tabulated with D; the
 //! mean of the shadowing is Gauss and Hermite's over five slopes in the plane of the two directions.
+//!
+//! With [`Average::Report`] f is the report's mean instead, without `(N.o)/o_z`. Then waves count most just before they
+//! turn from the observer: the mean is Gauss and Legendre's over seven slopes up to there, in the observer's plane.
 
 use crate::brdf::{Parts, up};
 use crate::characteristic::Component;
 use crate::quadrature::midpoints;
 use crate::slope_density::{Slopes, WindFrame, cubic};
 use crate::surface::normal;
-use crate::{Error, Lobe, Water};
+use crate::{Average, Error, Lobe, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::f64::consts::{SQRT_2, TAU};
 
 /// The table is over the half vector's tilt angles, to so many standard deviations of all slopes, or to the widest
 /// angle in radians, with so many nodes to either side of 0.
@@ -34,6 +38,19 @@ const RULE: [(f64, f64); 5] = [
     (2.856_970_013_872_806, 0.011_257_411_327_720_69),
     (-2.856_970_013_872_806, 0.011_257_411_327_720_69),
 ];
+/// Gauss and Legendre's, and to how many standard deviations it goes.
+const CUT_RULE: [(f64, f64); 7] = [
+    (0.0, 0.417_959_183_673_469_4),
+    (0.405_845_151_377_397_2, 0.381_830_050_505_118_9),
+    (-0.405_845_151_377_397_2, 0.381_830_050_505_118_9),
+    (0.741_531_185_599_394_4, 0.279_705_391_489_276_7),
+    (-0.741_531_185_599_394_4, 0.279_705_391_489_276_7),
+    (0.949_107_912_342_758_5, 0.129_484_966_168_869_7),
+    (-0.949_107_912_342_758_5, 0.129_484_966_168_869_7),
+];
+const CUT_END: f64 = 3.5;
+/// Keeps quotients finite.
+const TINY: f64 = 1e-12;
 
 /// A sea seen from afar, `surface = "ensemble"`.
 #[derive(Debug, Clone)]
@@ -58,8 +75,10 @@ pub struct Table {
     pub cells: Vec<f32>,
     /// Standard deviations of the drawn slopes, upwind and crosswind.
     pub sigma: [f64; 2],
-    /// Mean of N_z under whitecaps, and of N_z times the squares of the slope.
+    /// Mean of N_z under whitecaps, and of N_z times the squares of the slope; without N_z for [`Average::Report`].
     pub foam: [f64; 3],
+    /// What the mean is of.
+    pub average: Average,
 }
 
 #[derive(Debug, Clone)]
@@ -69,7 +88,7 @@ struct Waves {
     steps: DVec2,
     /// Row by row.
     cells: Vec<Cell>,
-    /// Mean of N_z under whitecaps, and of N_z times the squares of the slope.
+    /// Mean of N_z under whitecaps, and of N_z times the squares of the slope; without N_z for [`Average::Report`].
     foam: (f64, DVec2),
 }
 
@@ -96,7 +115,7 @@ impl EnsembleLobe {
             let f = &mut sampler.facets;
             f.proposal_u = f.proposal_u.hypot(waves.slopes.sigma.x);
             f.proposal_c = f.proposal_c.hypot(waves.slopes.sigma.y);
-            sampler.whitecap_fraction = waves.foam.0;
+            sampler.whitecap_fraction = foam(&waves.slopes, Average::Power).0;
         }
         Ok(Self { water: *water, sampler, wind, waves })
     }
@@ -116,27 +135,58 @@ impl EnsembleLobe {
         let Some(waves) = &self.waves else {
             return self.sampler.eval_parts(i.into(), o.into(), up(), parts);
         };
+        let report = self.water.parameters.average == Average::Report;
         let half = i + o;
         let cell = waves.at(self.wind.to_wind(-half.truncate() / half.z));
         let mut reflected = 0.0;
         if parts.facets && cell.density > 0.0 {
-            // Either way round the rule meets the same slopes.
-            let across = (o - i).truncate().try_normalize().unwrap_or(DVec2::X);
-            let along = self.wind.to_wind(across);
-            let spread = (along * along).dot(cell.variance).max(0.0).sqrt();
-            let shadowing = |(x, weight): &(f64, f64)| {
-                let slope = self.wind.to_world(cell.mean + along * spread * *x);
-                weight * lobe.facets.shadowed_reflectance(i.into(), o.into(), normal(slope.into()))
-            };
-            reflected = cell.density * RULE.iter().map(shadowing).sum::<f64>();
+            let visible =
+                if report { self.visible_mean(&cell, i, o) } else { self.visible_power(&cell, i, o) };
+            reflected = cell.density * visible;
         }
-        let (level, tilted) = waves.foam;
         let [i_wind, o_wind] = [i, o].map(|v| self.wind.to_wind(v.truncate()));
         if parts.whitecaps {
-            reflected += lobe.whitecap_brdf * (level * i.z * o.z + (tilted * i_wind).dot(o_wind)).max(0.0);
+            let seen = if report { foam_mean } else { foam_power };
+            reflected += lobe.whitecap_brdf * seen(waves.foam, (i_wind, i.z), (o_wind, o.z)).max(0.0);
+        }
+        if report {
+            reflected *= o.z;
         }
         let hidden = waves.slopes.hidden(i_wind, i.z) + waves.slopes.hidden(o_wind, o.z);
         reflected / (i.z * o.z * (1.0 + hidden))
+    }
+
+    /// Mean of `rho G` over the waves that carry a half vector's facets.
+    fn visible_power(&self, cell: &Cell, i: DVec3, o: DVec3) -> f64 {
+        // Either way round the rule meets the same slopes.
+        let across = (o - i).truncate().try_normalize().unwrap_or(DVec2::X);
+        let along = self.wind.to_wind(across);
+        let spread = cell.spread(along);
+        let visible = |(x, weight): &(f64, f64)| {
+            let slope = self.wind.to_world(cell.mean + along * spread * *x);
+            weight * self.water.lobe.facets.shadowed_reflectance(i.into(), o.into(), normal(slope.into()))
+        };
+        RULE.iter().map(visible).sum()
+    }
+
+    /// Mean of `rho G/(N.o)` over them.
+    fn visible_mean(&self, cell: &Cell, i: DVec3, o: DVec3) -> f64 {
+        let o_wind = self.wind.to_wind(o.truncate());
+        let along = o_wind.try_normalize().unwrap_or(DVec2::X);
+        let spread = cell.spread(along);
+        // Across the observer's plane slopes only make normals lean.
+        let across = (cell.variance.element_sum() - spread * spread).max(0.0);
+        let turns = (o.z - o_wind.dot(cell.mean)) / (o_wind.length() * spread).max(TINY);
+        let half = 0.5 * (turns.clamp(-CUT_END, CUT_END) + CUT_END);
+        let visible = |(x, weight): &(f64, f64)| {
+            let x = half * (1.0 + x) - CUT_END;
+            let slope = cell.mean + along * spread * x;
+            let n = DVec3::from((-self.wind.to_world(slope), 1.0))
+                / (1.0 + slope.length_squared() + across).sqrt();
+            let g = self.water.lobe.facets.shadowed_reflectance(i.into(), o.into(), n.into());
+            weight * gauss(x) * g / n.dot(o).max(TINY)
+        };
+        half * CUT_RULE.iter().map(visible).sum::<f64>()
     }
 
     /// For traced code; `None` where there are no waves and [`EnsembleLobe::sampler`] is all there is.
@@ -159,6 +209,7 @@ impl EnsembleLobe {
             cells: cells.collect(),
             sigma: waves.slopes.sigma.into(),
             foam: [level, tilted.x, tilted.y],
+            average: self.water.parameters.average,
         })
     }
 }
@@ -176,12 +227,7 @@ impl Waves {
                 Cell::new(&slopes, water, wind, (node * steps).map(f64::tan))
             })
             .collect();
-        let mut foam = (0.0, DVec2::ZERO);
-        for point in slopes.capped.iter().flat_map(|_| slopes.points()) {
-            let share = point.capped / (1.0 + point.slope.length_squared()).sqrt();
-            foam.0 += share;
-            foam.1 += share * point.slope * point.slope;
-        }
+        let foam = foam(&slopes, water.parameters.average);
         Self { slopes, steps, cells, foam }
     }
 
@@ -214,7 +260,43 @@ impl Waves {
     }
 }
 
+/// Mean of N_z, or of 1, under whitecaps, and of the same times the squares of the slope.
+fn foam(slopes: &Slopes, average: Average) -> (f64, DVec2) {
+    let mut foam = (0.0, DVec2::ZERO);
+    for point in slopes.capped.iter().flat_map(|_| slopes.points()) {
+        let share = match average {
+            Average::Power => point.capped / (1.0 + point.slope.length_squared()).sqrt(),
+            Average::Report => point.capped,
+        };
+        foam.0 += share;
+        foam.1 += share * point.slope * point.slope;
+    }
+    foam
+}
+
+/// Mean of `(N.i)(N.o)/N_z` under whitecaps, for directions' horizontal parts upwind and crosswind and their heights.
+fn foam_power((level, tilted): (f64, DVec2), (i, i_z): (DVec2, f64), (o, o_z): (DVec2, f64)) -> f64 {
+    level * i_z * o_z + (tilted * i).dot(o)
+}
+
+/// Mean of `(N.i)/N_z` under whitecaps where they face `o`, if their slopes are Gaussian.
+fn foam_mean((level, tilted): (f64, DVec2), (i, i_z): (DVec2, f64), (o, o_z): (DVec2, f64)) -> f64 {
+    let spread = ((tilted * o).dot(o) / level.max(TINY)).sqrt().max(TINY);
+    let turns = (o_z / spread).min(1.0 / TINY);
+    level * i_z * 0.5 * libm::erfc(-turns / SQRT_2) + (tilted * i).dot(o) / spread * gauss(turns)
+}
+
+/// Gauss's density.
+fn gauss(x: f64) -> f64 {
+    (-0.5 * x * x).exp() / TAU.sqrt()
+}
+
 impl Cell {
+    /// Standard deviation of the slopes along a horizontal unit vector upwind and crosswind.
+    fn spread(&self, along: DVec2) -> f64 {
+        (along * along).dot(self.variance).max(0.0).sqrt()
+    }
+
     /// For a half vector of a slope upwind and crosswind.
     fn new(slopes: &Slopes, water: &Water, wind: WindFrame, half: DVec2) -> Self {
         let facets = &water.lobe.facets;

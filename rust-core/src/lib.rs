@@ -78,7 +78,7 @@ pub use exact::Exact;
 pub use facet_table::FacetTable;
 pub use instance_lobe::InstanceLobe;
 pub use optics::Fresnel;
-pub use parameters::{Body, Parameters, Readings, Surface, Water};
+pub use parameters::{Average, Body, Parameters, Readings, Surface, Water};
 pub use real::Real;
 pub use sampling::Sample;
 pub use scenario::{Aim, Engagement};

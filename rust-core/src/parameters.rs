@@ -38,6 +38,16 @@ pub enum Surface {
     Ensemble,
 }
 
+/// What a sea from afar reflects on average, of what its waves do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Average {
+    /// Power: f times the local cosine. Reciprocal.
+    #[default]
+    Power,
+    /// The report's mean of f, times the cosine to the vertical.
+    Report,
+}
+
 /// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters {
@@ -49,6 +59,8 @@ pub struct Parameters {
     pub footprint: f64,
     /// Where the facets lie.
     pub surface: Surface,
+    /// What the mean over all drawn waves is of; has no effect on other surfaces.
+    pub average: Average,
     /// The report's M: waves of a drawn surface.
     pub components: u32,
     /// The report's N: drawn surfaces of an ensemble.
@@ -88,6 +100,7 @@ impl Default for Parameters {
             wind_direction: 0.0,
             footprint: f64::INFINITY,
             surface: Surface::Flat,
+            average: Average::Power,
             components: 5,
             instances: 50,
             seed: 0,

@@ -2,7 +2,7 @@
 
 use crate::optics::Fresnel;
 use crate::wind::Wind;
-use crate::{Body, Error, Parameters, Readings, SlopeMeasure, Surface, Water};
+use crate::{Average, Body, Error, Parameters, Readings, SlopeMeasure, Surface, Water};
 
 /// A parameter as documentation and help show it.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +22,7 @@ const fn entry(name: &'static str, unit: &'static str, default: &'static str, he
 }
 
 /// Every parameter.
-pub const ENTRIES: [Entry; 22] = [
+pub const ENTRIES: [Entry; 23] = [
     entry("wind_speed", "m/s", "5", "wind speed at wind_height; 0 is calm"),
     entry("wind_height", "m", "10", "height at which wind_speed is measured, 0.1 to 100"),
     entry("friction_velocity", "cm/s", "", "friction velocity w* instead of wind_speed, 0 to 238.65"),
@@ -39,6 +39,12 @@ pub const ENTRIES: [Entry; 22] = [
         "",
         "flat",
         "which surface the facets lie on: flat, instance (drawn waves) or ensemble (their mean)",
+    ),
+    entry(
+        "average",
+        "",
+        "power",
+        "what an ensemble's mean is of: power, or the report's mean of f (times the flat cosine)",
     ),
     entry("components", "", "5", "the report's M: waves of a drawn surface, 1 to 65536"),
     entry("instances", "", "50", "the report's N: drawn surfaces of an ensemble"),
@@ -119,6 +125,7 @@ fn flag(parameter: &'static str, value: &Value) -> Result<bool, Error> {
 
 const SURFACES: [(&str, Surface); 3] =
     [("flat", Surface::Flat), ("instance", Surface::Instance), ("ensemble", Surface::Ensemble)];
+const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Average::Report)];
 /// Footprint of a surface with waves of its own, m, unless one is given.
 const WAVY_FOOTPRINT: f64 = 0.15;
 const WATERS: [(&str, Body); 2] = [("ocean", Body::Ocean), ("fresh", Body::Fresh)];
@@ -157,6 +164,7 @@ impl Parameters {
             ("wind_direction", _) => number(self.wind_direction),
             ("footprint", _) => number(self.footprint),
             ("surface", _) => word(&self.surface, &SURFACES),
+            ("average", _) => word(&self.average, &AVERAGES),
             ("components", _) => number(f64::from(self.components)),
             ("instances", _) => number(self.instances as f64),
             ("seed", _) => number(self.seed as f64),
@@ -274,6 +282,7 @@ impl Builder {
             "wind_direction" => p.wind_direction = number(name, value)?,
             "footprint" => self.footprint = Some(number(name, value)?),
             "surface" => p.surface = choice(name, value, &SURFACES)?,
+            "average" => p.average = choice(name, value, &AVERAGES)?,
             "components" => p.components = whole(name, value)?,
             "instances" => p.instances = whole(name, value)?,
             "seed" => p.seed = whole(name, value)?,
@@ -338,6 +347,7 @@ mod tests {
             ("wind_direction", Value::Number(-30.0)),
             ("footprint", Value::Number(0.15)),
             ("surface", Value::Text("instance".into())),
+            ("average", Value::Text("report".into())),
             ("components", Value::Number(20.0)),
             ("instances", Value::Number(1e6)),
             ("seed", Value::Number(12345.0)),
@@ -458,6 +468,7 @@ mod tests {
             ("footprint", number(-1.0)),
             ("footprint", number(f64::NAN)),
             ("surface", text("lumpy")),
+            ("average", text("median")),
             ("components", number(0.0)),
             ("components", number(1e5)),
             ("components", number(2.5)),

@@ -87,6 +87,10 @@ fn the_sea_from_afar() {
     let lobe = prob_water::EnsembleLobe::new(&water.configure().unwrap()).unwrap();
     close(table(&text)[1][6], &lobe.eval([0.6, 0.0, 0.8], [-0.48, 0.36, 0.8]).to_string());
     assert!((found[0] / found[1] - 1.0).abs() < 1e-11 && found[2] > 0.03 && found[3] == 0.0, "{found:?}");
+    let report = prob_water::Parameters { average: prob_water::Average::Report, ..water };
+    let lobe = prob_water::EnsembleLobe::new(&report.configure().unwrap()).unwrap();
+    let text = succeed("brdf --surface ensemble --average report --friction-velocity 24", rows);
+    close(table(&text)[1][6], &lobe.eval([0.6, 0.0, 0.8], [-0.48, 0.36, 0.8]).to_string());
     let with_normals = "ix,iy,iz,ox,oy,oz,nx,ny,nz\n0,0,1,0,0,1,0,0,1\n";
     assert!(refuse("brdf --surface ensemble", with_normals).contains("normals"));
 }
