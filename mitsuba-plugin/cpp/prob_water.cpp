@@ -84,9 +84,9 @@ Wind-roughened water (:monosp:`prob_water`)
  * - footprint
    - |float|
    - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves; a texture gives D from
-     place to place; the string "pixel" takes the pixel's footprint on the water where the integrator knows ray
-     differentials (:monosp:`direct` does, :monosp:`path` does not). (Default: inf, or 0.15 where the surface is not
-     flat)
+     place to place; the string "pixel" takes the pixel's footprint on the water (a sample's share of it) where the
+     integrator knows ray differentials (:monosp:`direct` does, :monosp:`path` does not). (Default: inf, or 0.15 where
+     the surface is not flat)
    - |exposed|
 
  * - surface
