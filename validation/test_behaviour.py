@@ -67,6 +67,8 @@ def test_variants_are_all_tested_or_need_a_gpu():
         ({"surface": "ensemble", "footprint": "pixel"}, ["footprint", "pixel", "number", "ensemble"]),
         ({"surface": "ensemble", "whitecaps": {"type": "uniform", "value": 0.1}}, ["whitecaps", "texture", "ensemble"]),
         ({"footprint": "wide"}, ["footprint", "wide"]),
+        ({"pixel_angle": 0.1}, ["pixel_angle", "0.1", "pixel"]),
+        ({"footprint": "pixel", "pixel_angle": -1.0}, ["pixel_angle", "-1", "0 to 90"]),
         ({"surface": "ensemble", "components": 3}, ["components", "3", "4"]),
         ({"components": 0}, ["components", "0"]),
         ({"depth": -1.0}, ["depth", "-1"]),

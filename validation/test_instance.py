@@ -121,10 +121,14 @@ def test_a_footprint_texture_is_the_footprint(use, variant, wind):
     np.testing.assert_allclose(some, 0.7 * none + 0.3 * all_, rtol=1e-4, atol=1e-6)
 
 
-def test_pixel_footprint(use):
-    """With ray differentials the facets' D is the side of a square as large as the pixel on the water."""
-    mi = use("llvm_ad_rgb")
-
+@pytest.mark.parametrize("variant, integrator, pixel", [
+    ("scalar_rgb", "direct", {}),
+    ("scalar_rgb", "path", {"pixel_angle": np.degrees(0.02)}),
+    ("llvm_ad_rgb", "path", {"pixel_angle": np.degrees(0.02)}),
+])
+def test_pixel_footprint(use, variant, integrator, pixel):
+    """The facets' D is the side of a square as large as the pixel on the water; with differentials, the sample's share."""
+    mi = use(variant)
     i, o = direction(35.0, 180.0), direction(40.0, 0.0)
     film = {"type": "hdrfilm", "width": 1, "height": 1, "rfilter": {"type": "box"}, "pixel_format": "luminance",
             "component_format": "float32"}
@@ -132,18 +136,17 @@ def test_pixel_footprint(use):
     sensor = {"type": "perspective", "fov": float(np.degrees(width)), "film": film, "to_world": mi.ScalarTransform4f()
               .look_at(origin=[float(distance * x) for x in o], target=[0, 0, 0], up=[0, 0, 1])}
     side = float(distance * width / np.sqrt(o[2]))
-    integrator = mi.load_dict({"type": "direct"})
 
-    def image(footprint, samples):
-        view = scene(mi, {"friction_velocity": 24.0, "footprint": footprint}, sun=sun(i), sensor=sensor)
-        return np.array(mi.render(view, integrator=integrator, spp=samples, seed=2)).item()
+    def image(water, samples):
+        view = scene(mi, {"friction_velocity": 24.0, **water}, sun=sun(i), sensor=sensor)
+        return np.array(mi.render(view, integrator=mi.load_dict({"type": integrator}), spp=samples, seed=2)).item()
 
     for samples in (1, 64):
-        # The renderer hands every sample its share of the pixel.
-        found, wanted, other = image("pixel", samples), image(side / samples**0.5, samples), image(side, 1)
-        print("\n", samples, found, wanted, other)
-        assert abs(found / wanted - 1) < 5e-3
-    assert abs(found / other - 1) > 0.05
+        share = side if pixel else side / samples**0.5
+        found, wanted = image({"footprint": "pixel", **pixel}, samples), image({"footprint": share}, samples)
+        other = image({}, samples)
+        print(f"\n{samples} samples: {found} {wanted} {other}")
+        assert abs(found / wanted - 1) < 1e-2 < 5e-2 < abs(other / wanted - 1)
 
 
 @pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb"])

@@ -84,10 +84,15 @@ Wind-roughened water (:monosp:`prob_water`)
  * - footprint
    - |float|
    - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves; a texture gives D from
-     place to place; the string "pixel" takes the pixel's footprint on the water (a sample's share of it) where the
-     integrator knows ray differentials (:monosp:`direct` does, :monosp:`path` does not). (Default: inf, or 0.15 where
-     the surface is not flat)
+     place to place; the string "pixel" takes the side of a square as large as the pixel on the water: from ray
+     differentials where they exist (scalar variants with the :monosp:`direct` integrator, a sample's share of the
+     pixel), else from :monosp:`pixel_angle`. (Default: inf, or 0.15 where the surface is not flat)
    - |exposed|
+
+ * - pixel_angle
+   - |float|
+   - For footprint "pixel": the angle in degrees that a pixel subtends at the camera, the field of view over the pixels
+     across. (Default: unknown; without differentials the footprint then is that of a number left out)
 
  * - surface
    - |string|
@@ -186,6 +191,10 @@ public:
         if (props.has_property("water_leaving"))
             m_water_leaving = props.get_texture<Texture>("water_leaving");
         take(props);
+        double angle = props.get<double>("pixel_angle", 0.);
+        if (!(angle >= 0. && angle < 90.) || (angle > 0. && !m_pixel))
+            Throw("prob_water: pixel_angle = %s is out of range: allowed is 0 to 90 degrees, with footprint = pixel", angle);
+        m_pixel_angle = (ScalarFloat) (angle * dr::Pi<double> / 180.);
         configure();
     }
 
@@ -447,7 +456,10 @@ private:
             Vector3f x = dr::fmadd(si.dp_du, si.duv_dx.x(), si.dp_dv * si.duv_dx.y()),
                      y = dr::fmadd(si.dp_du, si.duv_dy.x(), si.dp_dv * si.duv_dy.y());
             d = dr::sqrt(dr::norm(dr::cross(x, y)));
-            d = dr::select(d > 0.f, d, m_own_footprint);
+            Float seen = m_own_footprint;
+            if (m_pixel_angle > 0.f)
+                seen = m_pixel_angle * si.t * dr::rsqrt(dr::maximum(si.wi.z(), 1e-4f));
+            d = dr::select(d > 0.f, d, seen);
         } else {
             d = m_footprint->eval_1(si, active);
         }
@@ -640,7 +652,7 @@ private:
     std::vector<std::string> m_given;
     std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
     ref<Texture> m_footprint, m_whitecap_texture, m_water_leaving;
-    ScalarFloat m_own_footprint = 0.f;
+    ScalarFloat m_own_footprint = 0.f, m_pixel_angle = 0.f;
     bool m_pixel = false, m_whitecaps = false, m_afar_only = false, m_drawn_waves = false, m_places = false;
     Lobe m_lobe;
     Afar m_afar;
