@@ -35,6 +35,7 @@
 //! | [`ensemble`] | section 7: statistics over drawn surfaces |
 //! | [`exact`] | the same for infinitely many, without draws |
 //! | [`EnsembleLobe`] | the BRDF of a wavy sea seen from afar |
+//! | [`grid`], [`mesh`] | a realised sea as triangles |
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
@@ -49,6 +50,8 @@ pub mod ensemble;
 pub mod ensemble_lobe;
 mod error;
 pub mod exact;
+pub mod grid;
+pub mod mesh;
 pub mod optics;
 mod parameters;
 mod quadrature;
@@ -71,6 +74,8 @@ pub use ensemble::{Ensemble, Presence, Statistics};
 pub use ensemble_lobe::EnsembleLobe;
 pub use error::Error;
 pub use exact::Exact;
+pub use grid::Layout;
+pub use mesh::Mesh;
 pub use optics::Fresnel;
 pub use parameters::{Body, Parameters, Readings, Surface, Water};
 pub use real::Real;
