@@ -7,7 +7,7 @@ use crate::{Outcome, parameters};
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use prob_water::scenario::{FARTHEST, LONGEST_TIME};
 use prob_water::waves::Component;
-use prob_water::{Ensemble, Error, RealisedSurface, Surface};
+use prob_water::{Draws, Ensemble, Error, RealisedSurface, Surface};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -51,6 +51,20 @@ pub fn command() -> Command {
                 .default_value("0")
                 .help("which of the seas that the seed draws"),
         )
+        .arg(
+            Arg::new("draws")
+                .long("draws")
+                .value_name("HOW")
+                .value_parser(["random", "sobol", "stratified"])
+                .default_value("random")
+                .help("how the random numbers are spread: over the instances (random, sobol), or evenly over the spectrum (stratified)"),
+        )
+        .arg(
+            Arg::new("fade")
+                .long("fade")
+                .action(ArgAction::SetTrue)
+                .help("waves fade out in an octave about two footprints instead of ending there, as on a mesh"),
+        )
         .args(table::flags())
         .args(parameters::flags_and_from(Surface::Instance))
 }
@@ -81,9 +95,18 @@ fn grid(text: &str) -> Result<Grid, String> {
 
 /// Writes the points asked for, the waves or the bounds.
 pub fn run(matches: &ArgMatches) -> Outcome {
+    let water = parameters::water_on(&[Surface::Instance], matches)?;
+    let fade = matches.get_flag("fade");
+    let draws = match matches.get_one::<String>("draws").expect("has a default").as_str() {
+        "stratified" => Draws::Stratified,
+        "sobol" => Draws::Sobol,
+        _ => Draws::Random,
+    };
+    let waves = if fade { water.fading_waves() } else { water.waves() };
     let sea = Sea {
-        all: Ensemble::new(&parameters::water_on(&[Surface::Instance], matches)?),
+        all: Ensemble { waves, draws, ..Ensemble::new(&water) },
         instance: *matches.get_one("instance").expect("has a default"),
+        fade,
     };
     if let Some(Grid { size: [nx, ny], step }) = matches.get_one("grid") {
         let time = sea.all.water.parameters.time;
@@ -127,6 +150,7 @@ fn points(input: &[u8], now: f64) -> Result<Vec<[f64; 3]>, String> {
 struct Sea {
     all: Ensemble,
     instance: u64,
+    fade: bool,
 }
 
 const COLUMNS: [&str; 11] =
@@ -136,7 +160,9 @@ const WAVES: [&str; 6] =
 
 impl Sea {
     fn components(&self) -> impl Iterator<Item = Component> {
-        self.all.components(self.instance).1
+        let footprint = self.all.water.parameters.footprint;
+        let components = self.all.components(self.instance).1;
+        components.map(move |c| if self.fade { c.seen_at(footprint) } else { c })
     }
 
     /// A row for every x, y, m, and time, s.

@@ -1,5 +1,7 @@
 //! What the Mitsuba shim calls: configuration and errors over a cxx bridge, the hot path as plain C functions.
 
+mod surface;
+
 use prob_water::brdf::{Parts, up};
 use prob_water::real::IERFC;
 use prob_water::vocabulary::{Builder, ENTRIES, Value};

@@ -37,6 +37,7 @@
 //! | [`EnsembleLobe`] | the BRDF of a wavy sea seen from afar |
 //! | [`InstanceLobe`] | that of one drawn sea, place by place |
 //! | [`FacetTable`] | facets where the footprint changes from place to place |
+//! | [`grid`], [`mesh`] | a realised sea as triangles |
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
@@ -52,7 +53,9 @@ pub mod ensemble_lobe;
 mod error;
 pub mod exact;
 mod facet_table;
+pub mod grid;
 mod instance_lobe;
+pub mod mesh;
 pub mod optics;
 mod parameters;
 mod quadrature;
@@ -76,7 +79,9 @@ pub use ensemble_lobe::EnsembleLobe;
 pub use error::Error;
 pub use exact::Exact;
 pub use facet_table::FacetTable;
+pub use grid::Layout;
 pub use instance_lobe::InstanceLobe;
+pub use mesh::Mesh;
 pub use optics::Fresnel;
 pub use parameters::{Average, Body, Parameters, Readings, Surface, Water};
 pub use real::Real;

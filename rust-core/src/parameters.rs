@@ -4,6 +4,7 @@ use crate::spectrum::Spectrum;
 use crate::waves::Waves;
 use crate::wind::{Wind, WindProfile};
 use crate::{Error, SlopeMeasure, scenario, shadowing, slopes, whitecap};
+use std::f64::consts::SQRT_2;
 
 /// Salt or no salt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -161,11 +162,20 @@ impl Water {
 
     /// What the waves longer than two footprints are drawn from.
     pub fn waves(&self) -> Waves {
+        self.waves_down_to(self.parameters.footprint)
+    }
+
+    /// What waves are drawn from that fade out in an octave about two footprints, as [`crate::surface::share`] has it.
+    pub fn fading_waves(&self) -> Waves {
+        self.waves_down_to(self.parameters.footprint / SQRT_2)
+    }
+
+    fn waves_down_to(&self, footprint: f64) -> Waves {
         let p = &self.parameters;
         let spectrum = Spectrum::new(&self.wind, p.water, p.depth, p.fetch);
         Waves {
             spectrum,
-            log_range: spectrum.k_max(p.footprint).map(|k_max| [spectrum.k_min.ln(), k_max.ln()]),
+            log_range: spectrum.k_max(footprint).map(|k_max| [spectrum.k_min.ln(), k_max.ln()]),
             components: p.components as usize,
             wind_azimuth: p.wind_direction.to_radians(),
         }

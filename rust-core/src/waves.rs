@@ -8,9 +8,13 @@
 //!
 //! [`Draws::Sobol`] replaces the upper 23 bits of the first 256 numbers by Burley's hashed Sobol sequence, its 65536 points
 //! by a new scramble for every 65536 instances.
+//!
+//! [`Draws::Stratified`] takes the same numbers. Component j of M has its wave number at (j + u)/M of the range, and its
+//! azimuth at the fraction of j golden ratios plus the first component's number; the other components' third number is
+//! not used. So components come in order of rising wave number, and other M draw another sea.
 
 use crate::spectrum::{Spectrum, spreading};
-use crate::surface::Surface;
+use crate::surface::{Surface, share};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use std::f64::consts::{PI, TAU};
@@ -24,7 +28,13 @@ pub enum Draws {
     /// By an Owen-scrambled Sobol sequence: each instance by itself is distributed as in the report, and all of them
     /// cover the possible draws evenly. A mean over instances keeps its expectation and loses spread.
     Sobol,
+    /// Evenly over the spectrum: every component by itself is distributed as one of the report's, and hundreds of them
+    /// are, in each instance, a sea of the spectrum's variances.
+    Stratified,
 }
+
+/// Its multiples' fractions spread most evenly.
+const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
 
 /// One drawn wave, in metres and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +60,16 @@ impl Component {
         let (sin, cos) = self.azimuth.sin_cos();
         let since = self.frequency * time + self.wave_number * (x * cos + y * sin);
         Self { phase: (self.phase - since) % TAU, ..self }
+    }
+
+    /// The part of the wave that stays geometry at a footprint in m, see [`share`].
+    pub fn seen_at(self, footprint: f64) -> Self {
+        Self { amplitude: self.amplitude * share(self.wave_number, footprint).sqrt(), ..self }
+    }
+
+    /// Variance of its vertical acceleration (Eq. 52), m^2/s^4.
+    pub(crate) fn acceleration_variance(&self) -> f64 {
+        0.5 * (self.amplitude * self.frequency * self.frequency).powi(2)
     }
 }
 
@@ -103,7 +123,16 @@ impl Waves {
     /// The components that these numbers draw.
     pub fn components(&self, mut numbers: Numbers) -> impl Iterator<Item = Component> {
         let range = self.log_range.unwrap_or_default();
-        (0..self.len()).map(move |_| self.draw(range, std::array::from_fn(|_| numbers.next())))
+        let mut shift = None;
+        (0..self.len()).map(move |j| {
+            let mut u: [f64; 3] = std::array::from_fn(|_| numbers.next());
+            if numbers.draws == Draws::Stratified {
+                let shift = *shift.get_or_insert(u[2]);
+                u[0] = (j as f64 + u[0]) / self.len() as f64;
+                u[2] = (shift + j as f64 * GOLDEN_RATIO).fract();
+            }
+            self.draw(range, u)
+        })
     }
 
     /// Their surface at a time in s.
@@ -114,6 +143,7 @@ impl Waves {
 
 /// The uniform numbers of one instance.
 pub struct Numbers {
+    draws: Draws,
     stream: ChaCha8Rng,
     sobol: Option<Point>,
 }
@@ -140,7 +170,7 @@ impl Numbers {
             scramble: mix(seed ^ mix(instance >> SEQUENCE)) as u32,
             dimension: 0,
         });
-        Self { stream, sobol }
+        Self { draws, stream, sobol }
     }
 
     /// The next number, of [0, 1).

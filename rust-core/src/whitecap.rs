@@ -1,5 +1,8 @@
 //! Whitecaps: how much of the sea they cover and what they reflect. Eqs. 51 and 53-55.
 
+use crate::wind::bisect;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
 /// Acceleration of gravity, cm/s^2.
 pub const GRAVITY: f64 = 981.0;
 
@@ -29,7 +32,33 @@ pub fn probability(friction_velocity: f64, acceleration: f64) -> f64 {
     }
 }
 
+/// The mean of [`probability`] over vertical accelerations in cm/s^2 that are Gaussian with a mean and a standard
+/// deviation.
+pub fn mean_probability(friction_velocity: f64, mean: f64, deviation: f64) -> f64 {
+    if deviation <= 0.0 {
+        return probability(friction_velocity, mean);
+    }
+    let [sure, none] = onset(friction_velocity);
+    // P(x < limit), and the mean of max(0, limit - x): the ramp is a difference of two of those.
+    let below = |limit: f64| 0.5 * libm::erfc((mean - limit) / deviation * FRAC_1_SQRT_2);
+    let depth = |limit: f64| {
+        let z = (limit - mean) / deviation;
+        (limit - mean) * below(limit) + deviation * (-0.5 * z * z).exp() / (2.0 * PI).sqrt()
+    };
+    let ramp = none - sure;
+    let p = if ramp > 1e-6 * GRAVITY { (depth(none) - depth(sure)) / ramp } else { below(sure) };
+    p.clamp(0.0, 1.0)
+}
+
+/// The standard deviation in cm/s^2 of a Gaussian vertical acceleration that makes whitecaps (Eqs. 53-54) as frequent as
+/// `fraction`; `None` where no sea does, from nearly a half on.
+pub fn deviation(friction_velocity: f64, fraction: f64) -> Option<f64> {
+    const MOST: f64 = 100.0 * GRAVITY;
+    let reaches = |s: f64| mean_probability(friction_velocity, 0.0, s) >= fraction;
+    reaches(MOST).then(|| bisect(0.0, MOST, reaches))
+}
+
 /// The Lambertian BRDF of a whitecap (Eq. 55), 1/sr, at a wavelength in micrometres.
 pub fn brdf(wavelength: f64) -> f64 {
-    0.22 * (-1.75 * (wavelength.max(0.6) - 0.6)).exp() / std::f64::consts::PI
+    0.22 * (-1.75 * (wavelength.max(0.6) - 0.6)).exp() / PI
 }

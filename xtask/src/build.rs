@@ -9,7 +9,7 @@ use std::process::Command;
 use std::time::{Instant, SystemTime};
 
 /// Each is `mitsuba-plugin/cpp/<name>.cpp` and becomes `plugins/<name>.so`.
-const PLUGINS: [&str; 1] = ["prob_water"];
+const PLUGINS: [&str; 2] = ["prob_water", "prob_water_surface"];
 
 /// As the wheels were compiled: the layout of Dr.Jit's arrays depends on the instruction set, and a plugin compiled
 /// without AVX2 and FMA loads and returns wrong numbers.
@@ -50,6 +50,8 @@ pub fn build(out: &Path) -> Result<()> {
         {
             compiler.arg("-isystem").arg(packages.join(include));
         }
+        // Behind all others: a wheel that ships the header goes first.
+        compiler.arg("-idirafter").arg(sources.join("compat"));
         compiler.arg(sources.join(name).with_extension("cpp")).arg(&rust.library);
         compiler.arg("-L").arg(packages.join("mitsuba")).arg("-L").arg(packages.join("drjit"));
         compiler.args(LINK.split_whitespace()).arg("-o").arg(&partial);

@@ -1,0 +1,169 @@
+//! One realised sea as a triangle mesh whose level of detail changes with the distance: at every vertex the waves longer
+//! than two footprints are geometry ([`share`](crate::surface::share)), the shorter ones facets, and where crests break
+//! is what the drawn waves say of Eqs. 53-54.
+
+use crate::grid::{CELLS, Grid, Layout, Ring, needed, split};
+use crate::waves::{Component, Draws};
+use crate::{Ensemble, Error, RealisedSurface, Water, whitecap};
+use rayon::prelude::*;
+use std::fmt;
+
+/// A sea on a grid, ready to be computed at any time.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// The sea. Its footprint is the one at the centre.
+    pub water: Water,
+    /// Where the vertices are.
+    pub grid: Grid,
+    /// In order of rising wave numbers.
+    pub components: Vec<Component>,
+    foam: Option<Foam>,
+}
+
+/// Whitecaps by the waves' vertical acceleration.
+#[derive(Debug, Clone, Copy)]
+struct Foam {
+    /// Standard deviation of the acceleration that gives Eq. 51's fraction, m/s^2; `None`: they are everywhere.
+    deviation: Option<f64>,
+    /// So many of the components, the longest, have no more.
+    waves: usize,
+}
+
+/// What does not change with time.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// x and y of every vertex, m: the sea's own coordinates.
+    pub texcoords: Vec<f32>,
+    /// D at every vertex, m.
+    pub footprints: Vec<f32>,
+    /// Three corners of every triangle, counter-clockwise from above.
+    pub faces: Vec<u32>,
+}
+
+/// What the waves do.
+#[derive(Debug, Clone)]
+pub struct Vertices {
+    /// x, y, z of every vertex, m.
+    pub positions: Vec<f32>,
+    /// The unit normal of the waves at every vertex.
+    pub normals: Vec<f32>,
+    /// Probability of a whitecap at every vertex; empty where there are none.
+    pub whitecaps: Vec<f32>,
+}
+
+impl Mesh {
+    /// A sea within the layout's budgets: one instance, its draws stratified.
+    pub fn new(water: &Water, layout: &Layout) -> Result<Self, Error> {
+        let grid = Grid::new(layout, water.parameters.footprint)?;
+        let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(water) };
+        let components: Vec<_> = sea.components(0).1.collect();
+        let fraction = if water.parameters.whitecaps { water.whitecap_fraction } else { 0.0 };
+        let foam = (fraction > 0.0).then(|| {
+            let deviation = whitecap::deviation(water.wind.friction_velocity, fraction).map(|s| 0.01 * s);
+            let most = deviation.unwrap_or_default().powi(2);
+            let mut sum = 0.0;
+            let fits = |c: &&Component| {
+                sum += c.acceleration_variance();
+                sum <= most
+            };
+            Foam { deviation, waves: components.iter().take_while(fits).count() }
+        });
+        Ok(Self { water: *water, grid, components, foam })
+    }
+
+    /// What does not change with time.
+    pub fn level(&self) -> Level {
+        let grid = &self.grid;
+        let places = grid.rings.iter().flat_map(|ring| grid.places(ring));
+        let footprints =
+            grid.rings.iter().flat_map(|ring| std::iter::repeat_n(ring.footprint as f32, grid.on(ring)));
+        let vertices = grid.vertices as usize;
+        let mut level = Level {
+            texcoords: Vec::with_capacity(2 * vertices),
+            footprints: Vec::with_capacity(vertices),
+            faces: grid.triangles(),
+        };
+        level.texcoords.extend(places.flatten());
+        level.footprints.extend(footprints);
+        level
+    }
+
+    /// The waves at a time in s.
+    pub fn vertices(&self, time: f64) -> Vertices {
+        let vertices = self.grid.vertices as usize;
+        let zeros = |width: usize| vec![0.0; width * vertices];
+        let mut all = Vertices {
+            positions: zeros(3),
+            normals: zeros(3),
+            whitecaps: zeros(usize::from(self.foam.is_some())),
+        };
+        let pieces =
+            |array, width| split(array, self.grid.rings.iter().map(move |r| width * self.grid.on(r)));
+        let positions = pieces(&mut all.positions, 3);
+        let normals = pieces(&mut all.normals, 3);
+        let whitecaps = pieces(&mut all.whitecaps, usize::from(self.foam.is_some()));
+        let rings = self.grid.rings.par_iter().zip(positions).zip(normals).zip(whitecaps);
+        rings.for_each(|(((ring, positions), normals), whitecaps)| {
+            self.ring(ring, time, positions, normals, whitecaps);
+        });
+        all
+    }
+
+    fn ring(
+        &self,
+        ring: &Ring,
+        time: f64,
+        positions: &mut [f32],
+        normals: &mut [f32],
+        whitecaps: &mut [f32],
+    ) {
+        let seen = |waves: &[Component]| {
+            let mut waves: Vec<_> = waves.iter().map(|c| c.seen_at(ring.footprint)).collect();
+            waves.retain(|c| c.amplitude > 0.0);
+            waves
+        };
+        let (breaking, rest) = self.components.split_at(self.foam.map_or(0, |foam| foam.waves));
+        let (breaking, rest) = (seen(breaking), seen(rest));
+        let resolved: f64 = breaking.iter().map(Component::acceleration_variance).sum();
+        let [breaking, rest] = [breaking, rest].map(|waves| RealisedSurface::new(waves.into_iter(), time));
+
+        let corners = positions.chunks_exact_mut(3).zip(normals.chunks_exact_mut(3));
+        for (i, ([x, y], (position, normal))) in self.grid.places(ring).zip(corners).enumerate() {
+            let place = [x, y].map(f64::from);
+            let (mut point, other) = (breaking.point(place), rest.point(place));
+            point.height += other.height;
+            point.slope = std::array::from_fn(|axis| point.slope[axis] + other.slope[axis]);
+            position.copy_from_slice(&[x, y, point.height as f32]);
+            normal.copy_from_slice(&point.normal().map(|x| x as f32));
+            if let Some(foam) = self.foam {
+                whitecaps[i] = self.whitecap(foam, point.acceleration, resolved) as f32;
+            }
+        }
+    }
+
+    /// Probability of a whitecap where the resolved waves have an acceleration in m/s^2 and all over the sea its variance.
+    fn whitecap(&self, foam: Foam, acceleration: f64, resolved: f64) -> f64 {
+        let Some(all) = foam.deviation else { return self.water.whitecap_fraction };
+        let rest = (all * all - resolved).max(0.0).sqrt();
+        whitecap::mean_probability(self.water.wind.friction_velocity, 100.0 * acceleration, 100.0 * rest)
+    }
+}
+
+/// The mesh and the sea, a `name = value` a line.
+impl fmt::Display for Mesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (grid, layout) = (&self.grid, &self.grid.layout);
+        let edge = grid.rings.last().map_or(0.0, |ring| ring.footprint);
+        let center = self.water.parameters.footprint;
+        writeln!(f, "vertices = {}", grid.vertices)?;
+        writeln!(f, "faces = {}", grid.faces)?;
+        writeln!(f, "center = {}, {}", layout.center[0], layout.center[1])?;
+        writeln!(f, "radius = {}", layout.radius)?;
+        writeln!(f, "azimuth = {}", layout.azimuth)?;
+        writeln!(f, "opening = {}", layout.opening)?;
+        writeln!(f, "[cell at center = {:.4}, at edge = {:.4}]", center / CELLS, edge / CELLS)?;
+        writeln!(f, "[footprint at center = {center:.4}, at edge = {edge:.4}]")?;
+        writeln!(f, "[memory = {} MiB]", needed(grid.vertices))?;
+        write!(f, "{}", self.water)
+    }
+}
