@@ -100,7 +100,7 @@ template <typename Float, typename Spectrum>
 class ProbWaterSurface final : public Mesh<Float, Spectrum> {
 public:
     MI_IMPORT_BASE(Mesh, m_bsdf, m_to_world, m_vertex_count, m_face_count, m_vertex_positions, m_vertex_normals,
-                   m_vertex_texcoords, m_faces, add_attribute, attribute_buffer, has_attribute, recompute_bbox, initialize)
+                   m_vertex_texcoords, m_faces, add_attribute, attribute_buffer, recompute_bbox, initialize)
     MI_IMPORT_TYPES(BSDF, Texture)
     using typename Base::FloatStorage;
 
@@ -128,12 +128,13 @@ public:
         if (!keys.empty() && std::find(keys.begin(), keys.end(), "time") == keys.end())
             return Base::parameters_changed(keys);
         try {
-            fill();
+            refuse([&] { m_mesh->set_time(m_time); });
         } catch (...) {
             // A refused time leaves the sea as it was.
-            m_time = m_shown;
+            m_time = m_mesh->time();
             throw;
         }
+        fill();
         std::vector<std::string> moved = keys;
         moved.insert(moved.end(), { "vertex_positions", "vertex_normals" });
         Base::parameters_changed(moved);
@@ -208,28 +209,27 @@ private:
         });
     }
 
-    /// Moves the waves to the time; whether there are whitecaps.
+    /// Takes the waves as they are now; whether there are whitecaps.
     bool fill() {
-        prob_water::Vertices v = refuse([&] { return m_mesh->vertices(m_time); });
-        auto &to_world = m_to_world.scalar();
-        if (to_world != ScalarAffineTransform4f()) {
-            for (size_t i = 0; i < v.positions.size(); i += 3) {
-                ScalarPoint3f p = to_world * dr::load<ScalarPoint3f>(&v.positions[i]);
-                ScalarNormal3f n = dr::normalize(to_world * dr::load<ScalarNormal3f>(&v.normals[i]));
-                dr::store(&v.positions[i], p);
-                dr::store(&v.normals[i], n);
+        prob_water::Vertices v = m_mesh->vertices();
+        ScalarAffineTransform4f to_world = m_to_world.scalar();
+        for (size_t i = 0; i < v.positions.size(); i += 3) {
+            auto p = to_world * ScalarPoint3f(v.positions[i], v.positions[i + 1], v.positions[i + 2]);
+            auto n = dr::normalize(to_world * ScalarNormal3f(v.normals[i], v.normals[i + 1], v.normals[i + 2]));
+            for (size_t axis = 0; axis < 3; ++axis) {
+                v.positions[i + axis] = (float) p[axis];
+                v.normals[i + axis] = (float) n[axis];
             }
         }
         m_vertex_positions = load(v.positions);
         m_vertex_normals = load(v.normals);
-        bool whitecaps = !v.whitecaps.empty();
-        if (whitecaps && m_has_whitecaps)
+        if (v.whitecaps.empty())
+            return false;
+        if (m_whitecaps)
             attribute_buffer("vertex_whitecaps") = load(v.whitecaps);
-        else if (whitecaps)
+        else
             add_attribute("vertex_whitecaps", 1, { v.whitecaps.begin(), v.whitecaps.end() });
-        m_has_whitecaps = whitecaps;
-        m_shown = m_time;
-        return whitecaps;
+        return m_whitecaps = true;
     }
 
     /// The BSDF has the shape's sea, D and whitecaps.
@@ -264,8 +264,8 @@ private:
     }
 
     rust::Box<prob_water::SeaMesh> m_mesh;
-    double m_time, m_shown = 0.0;
-    bool m_has_whitecaps = false;
+    double m_time;
+    bool m_whitecaps = false;
 
     MI_TRAVERSE_CB(Base)
 };

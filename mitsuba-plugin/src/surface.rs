@@ -35,8 +35,9 @@ mod ffi {
         type SeaMesh;
         fn time(self: &SeaMesh) -> f64;
         fn level(self: &SeaMesh) -> Level;
-        /// The waves at a time in s.
-        fn vertices(self: &SeaMesh, time: f64) -> Result<Vertices>;
+        /// Moves the waves to a time in s.
+        fn set_time(self: &mut SeaMesh, time: f64) -> Result<()>;
+        fn vertices(self: &SeaMesh) -> Vertices;
         /// `name = value` lines.
         fn describe(self: &SeaMesh) -> String;
     }
@@ -125,14 +126,18 @@ impl SeaMesh {
         ffi::Level { texcoords: level.texcoords, footprints: level.footprints, faces: level.faces }
     }
 
-    fn vertices(&self, time: f64) -> Result<ffi::Vertices, Error> {
-        prob_water::Parameters { time, ..self.0.water.parameters }.configure()?;
-        let vertices = self.0.vertices(time);
-        Ok(ffi::Vertices {
+    fn set_time(&mut self, time: f64) -> Result<(), Error> {
+        self.0.water = prob_water::Parameters { time, ..self.0.water.parameters }.configure()?;
+        Ok(())
+    }
+
+    fn vertices(&self) -> ffi::Vertices {
+        let vertices = self.0.vertices(self.time());
+        ffi::Vertices {
             positions: vertices.positions,
             normals: vertices.normals,
             whitecaps: vertices.whitecaps,
-        })
+        }
     }
 
     fn describe(&self) -> String {

@@ -43,7 +43,7 @@ fn triangles_cover_the_plane_once() {
         assert_eq!(level.footprints.len(), vertices);
         assert_eq!(level.faces.len(), 3 * mesh.grid.faces as usize);
         let place = |i: u32| [0, 1].map(|axis| f64::from(level.texcoords[2 * i as usize + axis]));
-        let (mut edges, mut area, mut longest) = (HashMap::new(), 0.0, 0.0f64);
+        let (mut edges, mut area, mut worst) = (HashMap::new(), 0.0, 0.0f64);
         for corners in level.faces.chunks(3) {
             let [a, b, c] = [0, 1, 2].map(|i| place(corners[i]));
             let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -53,14 +53,13 @@ fn triangles_cover_the_plane_once() {
                 let (from, to) = (corners[side], corners[(side + 1) % 3]);
                 assert!(edges.insert((from, to), ()).is_none());
                 let ([x, y], [u, v]) = (place(from), place(to));
-                longest = longest.max((u - x).hypot(v - y).powi(2) / twice);
+                worst = worst.max((u - x).hypot(v - y).powi(2) / twice);
             }
         }
         let open: Vec<_> = edges.keys().filter(|(a, b)| !edges.contains_key(&(*b, *a))).collect();
         // Euler: as many outer edges as a disc has.
         assert_eq!(open.len(), 2 * vertices - 2 - mesh.grid.faces as usize);
         let expected = 0.5 * layout.opening.to_radians() * layout.radius.powi(2);
-        let worst = longest;
         println!("{layout:?}: growth {:.4}, worst edge^2/area {worst:.2}", mesh.grid.growth);
         assert!((area / expected - 1.0).abs() < 0.2 && area < expected);
         assert!(worst < 4.0, "{worst}");
@@ -180,7 +179,7 @@ fn shown(w: f64, distances: &[f64], seeds: u64) -> Vec<[f64; 2]> {
     let sums: Vec<_> = (0..seeds)
         .into_par_iter()
         .map(|seed| {
-            let mesh = Mesh::new(&sea(w, 0.15, seed), &small(2e4, 150_000)).unwrap();
+            let mesh = Mesh::new(&sea(w, 0.15, seed), &small(2e4, 50_000)).unwrap();
             let (level, vertices) = (mesh.level(), mesh.vertices(0.0));
             let (sin, cos) = 40f64.to_radians().sin_cos();
             let mut rows = vec![[0.0; 3]; distances.len()];
@@ -221,10 +220,10 @@ fn shown(w: f64, distances: &[f64], seeds: u64) -> Vec<[f64; 2]> {
 fn variance_is_complete_at_every_distance() {
     let distances = [2.0, 10.0, 50.0, 300.0, 2e3, 1e4];
     let mut worst = 0.0f64;
-    for w in [4.0, 8.0, 24.0, 56.0] {
+    for w in [4.0, 24.0] {
         let water = sea(w, 0.15, 0);
-        let grid = Grid::new(&small(2e4, 150_000), 0.15).unwrap();
-        for (r, found) in distances.iter().zip(shown(w, &distances, 24)) {
+        let grid = Grid::new(&small(2e4, 50_000), 0.15).unwrap();
+        for (r, found) in distances.iter().zip(shown(w, &distances, 16)) {
             let at = (CELLS * grid.growth * r).max(0.15);
             let facets = slopes::variances(&water.wind, at);
             let [_, u, c] = integrals(&water.fading_waves(), at);
@@ -247,14 +246,13 @@ fn variance_is_complete_at_every_distance() {
     assert!(worst < 0.1);
 }
 
-/// The mean of the whitecaps' probability is Eq. 51's fraction: near, along a line of a kilometre of smallest cells, and
-/// far, all around.
+/// The mean of the whitecaps' probability is Eq. 51's fraction within a few percent: near, along lines of smallest cells,
+/// and far, all around.
 #[test]
 fn whitecap_fraction() {
-    let line = Layout { opening: 0.01, ..small(1e3, 100_000) };
+    let line = Layout { opening: 0.01, ..small(300.0, 100_000) };
     for w in [24.0, 40.0, 56.0] {
-        for (footprint, layout, seeds) in [(0.15, line, 12), (0.6, line, 48), (20.0, small(2e4, 20_000), 12)]
-        {
+        for (footprint, layout, seeds) in [(0.2, line, 16), (0.6, line, 64), (20.0, small(2e4, 20_000), 4)] {
             let means = (0..seeds).into_par_iter().map(|seed| {
                 let mesh = Mesh::new(&sea(w, footprint, seed), &layout).unwrap();
                 let whitecaps = mesh.vertices(0.0).whitecaps;
@@ -273,7 +271,7 @@ fn whitecap_fraction() {
                 mean(0) / expected,
                 mean(1)
             );
-            assert!((mean(0) / expected - 1.0).abs() < 0.05);
+            assert!((mean(0) - expected).abs() < 0.03 * expected + 4.0 * error && error < 0.2 * expected);
         }
     }
     // None in a calm, none where they are switched off.

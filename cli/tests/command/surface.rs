@@ -117,3 +117,28 @@ fn rows_that_are_refused() {
         assert!(message.contains(named), "{message}");
     }
 }
+
+/// Draws spread over the spectrum: a wave from each of as many parts of it, whichever comes first the longest.
+#[test]
+fn stratified_and_fading() {
+    let sea = "--friction-velocity 16 --footprint 0.2 --components 64 --draws stratified";
+    let plain = succeed(&format!("surface --waves {sea}"), "");
+    let faded = succeed(&format!("surface --waves {sea} --fade"), "");
+    let [ends, fades] = [&plain, &faded].map(|waves| floats(waves, "wave_number_rad_m"));
+    for (k, most) in [(&ends, 1.0), (&fades, 2f64.sqrt())] {
+        assert!(k.is_sorted());
+        let most = most * std::f64::consts::PI / 0.2;
+        assert!(k.last().is_some_and(|k| *k <= most && *k > 0.8 * most));
+    }
+    // An octave about two footprints, at whose middle half of the energy is left.
+    let other = succeed(
+        &format!("surface --waves --footprint 0.1414213562373095 {}", sea.replace("--footprint 0.2", "")),
+        "",
+    );
+    let (whole, left) = (floats(&other, "amplitude_m"), floats(&faded, "amplitude_m"));
+    for (k, (whole, left)) in fades.iter().zip(whole.iter().zip(left)) {
+        let share = (0.5 - (k * 0.2 / std::f64::consts::PI).log2()).clamp(0.0, 1.0);
+        assert!((left * left / (whole * whole) - share).abs() < 1e-9, "{k}: {left} of {whole}");
+    }
+    assert!(refuse("surface --bounds --draws even", "").contains("even"));
+}
