@@ -6,7 +6,7 @@ from pathlib import Path
 import mitsuba as mi
 
 from mitsuba_setup import SEA
-from review_set import PICTURES, Picture
+from review_set import COMPARISONS, PICTURES, Comparison, Picture
 
 STYLE = """
 :root { color-scheme: light dark; }
@@ -22,12 +22,12 @@ pre { overflow-x: auto; }
 """
 
 # Entries of an EXR's metadata that are shown as they are; the sea is shown folded away.
-FACTS = ["scene", "parameters", "size", "samples", "seconds", "variant", "rendered"]
+FACTS = ["scene", "parameters", "size", "samples", "seconds", "variant", "rendered", "pictures", "overall", "scale"]
 
 
 def write_page(directory: Path, target: Path) -> None:
     """Writes the page on all pictures of the review set that are in `directory` into `target`."""
-    cards = [card(p, directory) for p in PICTURES if (directory / f"{p.name}.exr").is_file()]
+    cards = [card(p, directory) for p in (*PICTURES, *COMPARISONS) if (directory / f"{p.name}.exr").is_file()]
     target.write_text(
         "<!DOCTYPE html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n"
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
@@ -37,12 +37,12 @@ def write_page(directory: Path, target: Path) -> None:
     )
 
 
-def card(picture: Picture, directory: Path) -> str:
+def card(picture: Picture | Comparison, directory: Path) -> str:
     """One picture with its words and facts."""
     exr = mi.Bitmap(str(directory / f"{picture.name}.exr"))
     facts = exr.metadata()
     rows = "".join(f"<dt>{key}</dt><dd>{escape(str(facts[key]))}</dd>\n" for key in FACTS if key in facts)
-    sea = escape(str(facts[SEA])) if SEA in facts else "not in the file"
+    sea = "" if SEA not in facts else f"<details><summary>the water in full</summary><pre>{escape(str(facts[SEA]))}</pre></details>\n"
     width, height = exr.size()
     return (
         f"<article id='{picture.name}'>\n"
@@ -51,6 +51,5 @@ def card(picture: Picture, directory: Path) -> str:
         f"<h2>{escape(picture.title)}</h2>\n<p>{escape(picture.caption)}</p>\n<dl>\n{rows}"
         f"<dt>files</dt><dd><a href='{picture.name}.exr'>{picture.name}.exr</a> (linear), "
         f"<a href='{picture.name}.png'>{picture.name}.png</a></dd>\n</dl>\n"
-        f"<details><summary>the water in full</summary><pre>{sea}</pre></details>\n"
-        "</article>\n"
+        f"{sea}</article>\n"
     )

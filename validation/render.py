@@ -16,18 +16,19 @@ import mitsuba as mi
 import numpy as np
 
 import gallery
+from comparison import compare
 from mitsuba_setup import ROOT, SEA, SetupError, load_plugin, pick_variant, sea_of
-from review_set import PICTURES, Picture
-from tone import to_bytes, tone_map
+from review_set import COMPARISONS, PICTURES, Picture
+from tone import EXPOSURE, to_bytes, tone_map
 
 # Samples are taken in passes, each with its own seed, so that the time left can be told.
 PER_PASS = 16
 QUALITIES = {
-    "preview": {"passes": 4, "size": {"width": 960, "height": 540}},
+    "preview": {"passes": 2, "size": {"width": 640, "height": 360}},
     "final": {"passes": 32, "size": {"width": 1280, "height": 720}},
 }
-README_PICTURE = "sun_glint"
-README_IMAGE = ROOT / "docs" / "images" / "sun_glint.png"
+README_PICTURE = "beaufort_4"
+README_IMAGE = ROOT / "docs" / "images" / "open_sea.png"
 README_WIDTH = 960
 
 
@@ -50,6 +51,9 @@ def main() -> None:
     for number, picture in enumerate(pictures, 1):
         label = f"[{number}/{len(pictures)}] {picture.name}"
         render(picture, label, variant, QUALITIES[arguments.quality], arguments.out)
+    for comparison in COMPARISONS:
+        if any(picture.name in (comparison.first, comparison.second) for picture in pictures):
+            compare(comparison, arguments.out, replacing)
     with replacing(arguments.out / "index.html") as file:
         gallery.write_page(arguments.out, file)
     print(f"render: {arguments.out / 'index.html'}")
@@ -84,7 +88,9 @@ def select(names: list[str] | None) -> list[Picture]:
 def render(picture: Picture, label: str, variant: str, quality: dict, out: Path) -> None:
     """Renders one picture into its EXR and PNG."""
     parameters = picture.parameters | quality["size"]
+    start = time.monotonic()
     scene = mi.load_file(str(ROOT / picture.scene), **parameters)
+    built = time.monotonic() - start
     passes = quality["passes"]
     total, start = 0.0, time.monotonic()
     for done in range(passes):
@@ -102,7 +108,7 @@ def render(picture: Picture, label: str, variant: str, quality: dict, out: Path)
     )
     facts["size"] = "{width} x {height}".format(**quality["size"])
     facts["samples"] = f"{passes * PER_PASS} per pixel"
-    facts["seconds"] = f"{seconds:.1f}"
+    facts["seconds"] = f"{seconds:.1f}, and {built:.1f} to build the scene"
     facts["variant"] = f"{variant}, Mitsuba {mi.__version__}"
     facts["rendered"] = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime())
     bsdfs = [shape.bsdf() for shape in scene.shapes()]
@@ -111,7 +117,7 @@ def render(picture: Picture, label: str, variant: str, quality: dict, out: Path)
         facts[SEA] = sea_of(waters[0])
     with replacing(out / f"{picture.name}.exr") as file:
         bitmap.write(str(file))
-    write_png(out / f"{picture.name}.png", image)
+    write_png(out / f"{picture.name}.png", image, picture.exposure)
 
 
 def defaults(scene: str) -> dict[str, str]:
@@ -135,10 +141,10 @@ def progress(label: str, done: int, passes: int, seconds: float) -> None:
         print(line, flush=True)
 
 
-def write_png(target: Path, image: np.ndarray, dither: bool = True) -> None:
+def write_png(target: Path, image: np.ndarray, exposure: float = EXPOSURE, dither: bool = True) -> None:
     """The tone-mapped picture."""
     with replacing(target) as file:
-        mi.Bitmap(to_bytes(tone_map(image), dither)).write(str(file))
+        mi.Bitmap(to_bytes(tone_map(image, exposure), dither)).write(str(file))
 
 
 def write_readme_image(out: Path) -> None:

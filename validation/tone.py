@@ -1,4 +1,4 @@
-"""From scene light to a picture for the screen: one fixed exposure and curve, so that pictures compare."""
+"""From scene light to a picture for the screen: by day one exposure and curve, so that pictures compare."""
 
 import numpy as np
 
@@ -9,13 +9,13 @@ WHITE = 40.0
 REC709 = np.array([0.2126, 0.7152, 0.0722])
 
 
-def tone_map(radiance: np.ndarray) -> np.ndarray:
+def tone_map(radiance: np.ndarray, exposure: float = EXPOSURE) -> np.ndarray:
     """Linear sRGB in [0, 1] by Reinhard's curve v / (1 + v), scaled so that `WHITE` is 1.
 
     The curve on luminance keeps colours, the curve on each channel brings highlights to white: the darker a
     channel, the more of the former.
     """
-    light = np.maximum(radiance * EXPOSURE, 0.0)
+    light = np.maximum(radiance * exposure, 0.0)
     luminance = (light @ REC709)[..., None]
     channels = light / (1.0 + light)
     shown = (1.0 - channels) * light / (1.0 + luminance) + channels**2
