@@ -15,6 +15,7 @@
 #include "afar.h"
 #include "place.h"
 #include "sea.h"
+#include "words.h"
 
 // The hot path of the scalar variants: the Rust core, called as plain C.
 extern "C" {
@@ -207,6 +208,7 @@ public:
             if (sea.has_property(name) || std::find(std::begin(Sea), std::end(Sea), name) != std::end(Sea))
                 Throw("prob_water: %s is given on the BSDF of a prob_water_surface: give it on the shape", name);
         take(sea);
+        m_lent = true;
         configure();
     }
 
@@ -310,8 +312,11 @@ public:
             text << "\n  # footprint = " << varied();
         if (m_whitecap_texture)
             text << "\n  # whitecaps = a texture";
-        if (m_water_leaving)
-            text << "\n  # water_leaving = " << string::indent(string::indent(m_water_leaving));
+        if (m_water_leaving) {
+            std::string reflectance = m_water_leaving->to_string();
+            std::replace(reflectance.begin(), reflectance.end(), '\n', ' ');
+            text << "\n  # water_leaving = " << reflectance;
+        }
         text << "\n]";
         return text.str();
     }
@@ -355,37 +360,26 @@ private:
     /// Takes over the parameters of the vocabulary that are given.
     void take(const Properties &props) {
         refuse([&] {
-            for (const rust::String &word : prob_water::vocabulary()) {
-                std::string name(word);
-                if (!props.has_property(name))
-                    continue;
+            auto word = [&](const std::string &name, const auto &value) {
                 m_given.push_back(name);
-                switch (props.type(name)) {
-                    case Properties::Type::Bool:
-                        m_options->set_flag(name, props.get<bool>(name));
-                        break;
-                    case Properties::Type::Integer:
-                        m_options->set_number(name, (double) props.get<int64_t>(name));
-                        break;
-                    case Properties::Type::Float:
-                        m_options->set_number(name, props.get<double>(name));
-                        break;
-                    case Properties::Type::String: {
-                        std::string text(props.get<std::string_view>(name));
-                        m_pixel |= name == "footprint" && text == "pixel";
-                        if (name != "footprint" || !m_pixel)
-                            m_options->set_text(name, text);
-                        break;
+                if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) {
+                    if (name == "footprint" && value == "pixel") {
+                        m_pixel = true;
+                        return;
                     }
-                    default:
-                        if (name == "footprint")
-                            m_footprint = props.get_unbounded_texture<Texture>(name);
-                        else if (name == "whitecaps")
-                            m_whitecap_texture = props.get_texture<Texture>(name);
-                        else
-                            Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
                 }
-            }
+                prob_water::set_word(*m_options)(name, value);
+            };
+            auto object = [&](const std::string &name) {
+                m_given.push_back(name);
+                if (name == "footprint")
+                    m_footprint = props.get_unbounded_texture<Texture>(name);
+                else if (name == "whitecaps")
+                    m_whitecap_texture = props.get_texture<Texture>(name);
+                else
+                    Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
+            };
+            prob_water::words(props, prob_water::vocabulary(), word, object);
         });
     }
 
@@ -400,7 +394,7 @@ private:
         m_exposed.clear();
         for (const std::string name : Exposed)
             if (!std::isnan(water().number(name)) && (name != "footprint" || varied().empty()) &&
-                (name != "time" || drawn))
+                (name != "time" || drawn) && (!m_lent || name == "wavelength" || name == "ior"))
                 m_exposed.emplace_back(name, 0.f);
         apply();
         if (m_whitecap_texture && m_afar_only)
@@ -653,7 +647,7 @@ private:
     std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
     ref<Texture> m_footprint, m_whitecap_texture, m_water_leaving;
     ScalarFloat m_own_footprint = 0.f, m_pixel_angle = 0.f;
-    bool m_pixel = false, m_whitecaps = false, m_afar_only = false, m_drawn_waves = false, m_places = false;
+    bool m_pixel = false, m_whitecaps = false, m_afar_only = false, m_drawn_waves = false, m_places = false, m_lent = false;
     Lobe m_lobe;
     Afar m_afar;
     FacetTable m_facets;

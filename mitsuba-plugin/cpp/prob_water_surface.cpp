@@ -11,6 +11,7 @@
 #include "rust/cxx.h"
 
 #include "sea.h"
+#include "words.h"
 
 NAMESPACE_BEGIN(mitsuba)
 
@@ -148,11 +149,6 @@ public:
     MI_DECLARE_CLASS(ProbWaterSurface)
 
 private:
-    /// The words that the BSDF on the shape needs as well.
-    static constexpr const char *Lent[] = { "wind_speed", "wind_height", "friction_velocity", "beaufort",
-                                            "wind_direction", "wavelength", "ior", "water", "fresnel",
-                                            "slope_measure", "readings", "shadowing", "gram_charlier" };
-
     /// Runs a call into the core; its errors become Mitsuba's.
     template <typename Call> static auto refuse(Call call) {
         try {
@@ -166,43 +162,17 @@ private:
         return dr::load<FloatStorage>(values.data(), values.size());
     }
 
-    /// Calls with the name and the value, a double, a bool or a std::string, of every word that the scene gives.
-    template <typename Call> static void words(const Properties &props, Call call) {
-        for (const rust::String &word : prob_water::mesh_vocabulary()) {
-            std::string name(word);
-            if (!props.has_property(name))
-                continue;
-            switch (props.type(name)) {
-                case Properties::Type::Bool:
-                    call(name, props.get<bool>(name));
-                    break;
-                case Properties::Type::Integer:
-                    call(name, (double) props.get<int64_t>(name));
-                    break;
-                case Properties::Type::Float:
-                    call(name, props.get<double>(name));
-                    break;
-                case Properties::Type::String:
-                    call(name, std::string(props.get<std::string_view>(name)));
-                    break;
-                default:
-                    Throw("prob_water_surface: %s is an object: allowed is a number, true or false, or a word", name);
-            }
-        }
+    /// Calls with the name and the value of every word that the scene gives.
+    template <typename Word> static void words(const Properties &props, Word word) {
+        prob_water::words(props, prob_water::mesh_vocabulary(), word, [](const std::string &name) {
+            Throw("prob_water_surface: %s is an object: allowed is a number, true or false, or a word", name);
+        });
     }
 
     static rust::Box<prob_water::SeaMesh> configure(const Properties &props) {
         return refuse([&] {
             rust::Box<prob_water::MeshOptions> options = prob_water::mesh_options();
-            words(props, [&](const std::string &name, const auto &value) {
-                using Value = std::decay_t<decltype(value)>;
-                if constexpr (std::is_same_v<Value, double>)
-                    options->set_number(name, value);
-                else if constexpr (std::is_same_v<Value, bool>)
-                    options->set_flag(name, value);
-                else
-                    options->set_text(name, value);
-            });
+            words(props, prob_water::set_word(*options));
             auto center = props.get<ScalarPoint3f>("center", ScalarPoint3f(0.f));
             options->set_center(center.x(), center.y());
             return options->configure();
@@ -237,13 +207,16 @@ private:
         bool nested = false;
         for (auto &prop : props.objects())
             nested |= prop.template try_get<BSDF>() != nullptr;
+        if (!nested)
+            m_bsdf = PluginManager::instance()->create_object<BSDF>(Properties("prob_water"));
         auto *takes = dynamic_cast<prob_water::TakesSea *>(m_bsdf.get());
-        if (nested && !takes)
+        if (!takes)
             return;
 
         Properties sea("prob_water");
+        sea.set("components", (int64_t) m_mesh->components());
         words(props, [&](const std::string &name, const auto &value) {
-            if (std::find(std::begin(Lent), std::end(Lent), name) != std::end(Lent))
+            if (name != "footprint" && name != "whitecaps" && name != "components")
                 sea.set(name, value);
         });
         sea.set("footprint", attribute("vertex_footprint"));
@@ -251,10 +224,7 @@ private:
             sea.set("whitecaps", attribute("vertex_whitecaps"));
         else
             sea.set("whitecaps", false);
-        if (nested)
-            takes->take_sea(sea);
-        else
-            m_bsdf = PluginManager::instance()->create_object<BSDF>(sea);
+        takes->take_sea(sea);
     }
 
     static ref<Object> attribute(const char *name) {

@@ -34,6 +34,7 @@ mod ffi {
         /// A sea whose mesh fits into its budgets.
         type SeaMesh;
         fn time(self: &SeaMesh) -> f64;
+        fn components(self: &SeaMesh) -> u32;
         fn level(self: &SeaMesh) -> Level;
         /// Moves the waves to a time in s.
         fn set_time(self: &mut SeaMesh, time: f64) -> Result<()>;
@@ -75,7 +76,7 @@ impl MeshOptions {
     fn set(&mut self, name: &str, value: Value) -> Result<(), String> {
         let l = &mut self.layout;
         match (name, &value) {
-            ("surface" | "instances", _) => {
+            ("surface" | "instances" | "average", _) => {
                 return Err(format!("{name} = {value} has no meaning here: the shape is one drawn sea"));
             }
             ("radius", Value::Number(x)) => l.radius = *x,
@@ -119,6 +120,10 @@ struct SeaMesh(Mesh);
 impl SeaMesh {
     fn time(&self) -> f64 {
         self.0.water.parameters.time
+    }
+
+    fn components(&self) -> u32 {
+        self.0.water.parameters.components
     }
 
     fn level(&self) -> ffi::Level {

@@ -3,8 +3,8 @@
 //! is what the drawn waves say of Eqs. 53-54.
 
 use crate::grid::{CELLS, Grid, Layout, Ring, needed, split};
-use crate::waves::{Component, Draws};
-use crate::{Ensemble, Error, RealisedSurface, Water, whitecap};
+use crate::waves::{Component, Draws, Waves};
+use crate::{Ensemble, Error, Parameters, RealisedSurface, Water, whitecap};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -25,9 +25,15 @@ pub struct Mesh {
 struct Foam {
     /// Standard deviation of the acceleration that gives Eq. 51's fraction, m/s^2; `None`: they are everywhere.
     deviation: Option<f64>,
+    /// What a drawn wave's acceleration counts.
+    gain: f64,
     /// So many of the components, the longest, have no more.
     waves: usize,
 }
+
+/// Where the waves longer than two such footprints have too little acceleration for Eq. 51's fraction, theirs counts more:
+/// at this D, m, Eqs. 53-54 and Eq. 51 agree.
+const BREAKING: f64 = 0.1;
 
 /// What does not change with time.
 #[derive(Debug, Clone)]
@@ -51,23 +57,36 @@ pub struct Vertices {
     pub whitecaps: Vec<f32>,
 }
 
+impl Foam {
+    fn new(water: &Water, fraction: f64, components: &[Component]) -> Self {
+        let variance = |components: &[Component]| -> f64 {
+            components.iter().map(Component::acceleration_variance).sum()
+        };
+        let deviation = whitecap::deviation(water.wind.friction_velocity, fraction).map(|s| 0.01 * s);
+        let wanted = deviation.unwrap_or_default().powi(2);
+        let breaking = Water { parameters: Parameters { footprint: BREAKING, ..water.parameters }, ..*water };
+        let theirs = variance(&stratified(&breaking, breaking.waves()));
+        let gain = if theirs > 0.0 { (wanted / theirs).sqrt().max(1.0) } else { 1.0 };
+        let waves = (0..components.len())
+            .take_while(|n| gain * gain * variance(&components[..=*n]) <= wanted)
+            .count();
+        Self { deviation, gain, waves }
+    }
+}
+
+/// The waves of one instance whose draws are stratified, in order of rising wave numbers.
+fn stratified(water: &Water, waves: Waves) -> Vec<Component> {
+    let sea = Ensemble { draws: Draws::Stratified, waves, ..Ensemble::new(water) };
+    sea.components(0).1.collect()
+}
+
 impl Mesh {
     /// A sea within the layout's budgets: one instance, its draws stratified.
     pub fn new(water: &Water, layout: &Layout) -> Result<Self, Error> {
         let grid = Grid::new(layout, water.parameters.footprint)?;
-        let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(water) };
-        let components: Vec<_> = sea.components(0).1.collect();
+        let components = stratified(water, water.fading_waves());
         let fraction = if water.parameters.whitecaps { water.whitecap_fraction } else { 0.0 };
-        let foam = (fraction > 0.0).then(|| {
-            let deviation = whitecap::deviation(water.wind.friction_velocity, fraction).map(|s| 0.01 * s);
-            let most = deviation.unwrap_or_default().powi(2);
-            let mut sum = 0.0;
-            let fits = |c: &&Component| {
-                sum += c.acceleration_variance();
-                sum <= most
-            };
-            Foam { deviation, waves: components.iter().take_while(fits).count() }
-        });
+        let foam = (fraction > 0.0).then(|| Foam::new(water, fraction, &components));
         Ok(Self { water: *water, grid, components, foam })
     }
 
@@ -143,9 +162,11 @@ impl Mesh {
 
     /// Probability of a whitecap where the resolved waves have an acceleration in m/s^2 and all over the sea its variance.
     fn whitecap(&self, foam: Foam, acceleration: f64, resolved: f64) -> f64 {
-        let Some(all) = foam.deviation else { return self.water.whitecap_fraction };
-        let rest = (all * all - resolved).max(0.0).sqrt();
-        whitecap::mean_probability(self.water.wind.friction_velocity, 100.0 * acceleration, 100.0 * rest)
+        let Foam { deviation, gain, .. } = foam;
+        let Some(all) = deviation else { return self.water.whitecap_fraction };
+        let rest = (all * all - gain * gain * resolved).max(0.0).sqrt();
+        let w = self.water.wind.friction_velocity;
+        whitecap::mean_probability(w, 100.0 * gain * acceleration, 100.0 * rest)
     }
 }
 
