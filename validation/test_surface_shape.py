@@ -1,6 +1,7 @@
 """The shape prob_water_surface: its vertices against the core's sea, its slopes at every distance, time, and refusals."""
 
 import csv
+import re
 import subprocess
 
 import numpy as np
@@ -54,7 +55,8 @@ def test_vertices_are_the_sea_of_the_command(use, variant):
             parameters.update()
         found = buffers(mi, shape)
         assert np.array_equal(found["vertex_texcoords"], found["vertex_positions"][:, :2])
-        assert np.all(found["vertex_footprint"] == np.float32(0.2))
+        # Facets make up for what interpolation between vertices loses.
+        assert 0.2 <= found["vertex_footprint"].min() == found["vertex_footprint"].max() < 0.25
         rows = np.random.default_rng(1).integers(0, len(found["vertex_positions"]), 500)
         points = "x,y\n" + "".join(f"{x:.9g},{y:.9g}\n" for x, y in found["vertex_positions"][rows, :2])
         flags = [f"--{name.replace('_', '-')}={value}" for name, value in {**sea, "time": time}.items()]
@@ -88,7 +90,7 @@ def test_to_world_and_frame(use, variant):
 
 def test_slopes_are_complete_at_every_distance(use, full):
     """Waves in the shading normals and facets at the attribute's D have together the variance of the spectrum's resolved
-    part and the facets, from 2 m to 10 km, within 10 %; nothing jumps between distances."""
+    part and the facets at the mesh's D, from 2 m to 10 km, within 5 %; nothing jumps between distances."""
     mi = use("llvm_ad_rgb")
     distances, seeds, rays = 2.0 * 1.5 ** np.arange(22), 24 if full else 8, 4000
     for wind in (8.0, 24.0) if not full else (4.0, 8.0, 16.0, 24.0, 40.0, 56.0):
@@ -105,17 +107,18 @@ def test_slopes_are_complete_at_every_distance(use, full):
             rows += np.stack([np.mean(c.reshape(len(distances), rays), axis=1) for c in columns], axis=1) / seeds
         print(f"\nw* = {wind}: distance, D, resolved, facets, all upwind; the same crosswind; whitecaps")
         totals = []
-        for distance, (u, c, footprint, whitecap) in zip(distances, rows):
-            core = Core(friction_velocity=wind, footprint=footprint)
-            expected = np.array(resolved(wind, footprint))
-            facets = np.array([core.sigma_u2, core.sigma_c2])
-            ratio = (np.array([u, c]) + facets) / (expected + facets)
+        center, edge = map(float, re.search(r"footprint at center = (.*), at edge = (.*)\]", str(shape)).groups())
+        for distance, (u, c, at_facets, whitecap) in zip(distances, rows):
+            footprint = max(center, edge * distance / 20e3)
+            core, seen = (Core(friction_velocity=wind, footprint=d) for d in (footprint, at_facets))
+            facets = np.array([seen.sigma_u2, seen.sigma_c2])
+            ratio = (np.array([u, c]) + facets) / (resolved(wind, footprint) + np.array([core.sigma_u2, core.sigma_c2]))
             totals.append(ratio)
             print(f"{distance:8.1f} {footprint:8.2f}   {u:.5f} {facets[0]:.5f} {ratio[0]:.3f}   "
                   f"{c:.5f} {facets[1]:.5f} {ratio[1]:.3f}   {whitecap:.5f}")
         totals = np.array(totals)
-        assert np.all(np.abs(totals - 1) < 0.1)
-        assert np.all(np.abs(np.diff(totals, axis=0)) < 0.08)
+        assert np.all(np.abs(totals - 1) < 0.05)
+        assert np.all(np.abs(np.diff(totals, axis=0)) < 0.05)
 
 
 def resolved(wind, footprint):
@@ -126,7 +129,7 @@ def resolved(wind, footprint):
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     waves = list(csv.DictReader(text.splitlines()))
     a, k, phi = (np.array([float(w[n]) for w in waves]) for n in ("amplitude_m", "wave_number_rad_m", "azimuth_rad"))
-    return np.sum(0.5 * (a * k * np.cos(phi)) ** 2), np.sum(0.5 * (a * k * np.sin(phi)) ** 2)
+    return np.array([np.sum(0.5 * (a * k * np.cos(phi)) ** 2), np.sum(0.5 * (a * k * np.sin(phi)) ** 2)])
 
 
 @pytest.mark.parametrize("variant", VARIANTS)

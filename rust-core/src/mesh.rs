@@ -4,7 +4,8 @@
 
 use crate::grid::{CELLS, Grid, Layout, Ring, needed, split};
 use crate::waves::{Component, Draws, Waves};
-use crate::{Ensemble, Error, Parameters, RealisedSurface, Water, whitecap};
+use crate::wind::bisect;
+use crate::{Ensemble, Error, Parameters, RealisedSurface, Water, slopes, whitecap};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -40,7 +41,7 @@ const BREAKING: f64 = 0.1;
 pub struct Level {
     /// x and y of every vertex, m: the sea's own coordinates.
     pub texcoords: Vec<f32>,
-    /// D at every vertex, m.
+    /// D of the facets at every vertex, m: [`Mesh::facets`].
     pub footprints: Vec<f32>,
     /// Three corners of every triangle, counter-clockwise from above.
     pub faces: Vec<u32>,
@@ -94,8 +95,12 @@ impl Mesh {
     pub fn level(&self) -> Level {
         let grid = &self.grid;
         let places = grid.rings.iter().flat_map(|ring| grid.places(ring));
-        let footprints =
-            grid.rings.iter().flat_map(|ring| std::iter::repeat_n(ring.footprint as f32, grid.on(ring)));
+        let facets: Vec<f64> = grid.rings.par_iter().map(|ring| self.facets(ring.footprint)).collect();
+        let footprints = grid
+            .rings
+            .iter()
+            .zip(facets)
+            .flat_map(|(ring, footprint)| std::iter::repeat_n(footprint as f32, grid.on(ring)));
         let vertices = grid.vertices as usize;
         let mut level = Level {
             texcoords: Vec::with_capacity(2 * vertices),
@@ -105,6 +110,21 @@ impl Mesh {
         level.texcoords.extend(places.flatten());
         level.footprints.extend(footprints);
         level
+    }
+
+    /// D of the facets where the waves have a footprint in m: so much larger that the facets' slope variance makes up for
+    /// what interpolation between vertices takes from the waves'.
+    pub fn facets(&self, footprint: f64) -> f64 {
+        let cell = footprint / CELLS;
+        let lost: f64 = self
+            .components
+            .iter()
+            .map(|c| c.seen_at(footprint).slope_variance() * (1.0 - interpolated(c.wave_number * cell)))
+            .sum();
+        let total = |d: f64| slopes::variances(&self.water.wind, d).iter().sum::<f64>();
+        let wanted = total(footprint) + lost;
+        // No facets are rougher than those of a thousand times the footprint, for what interpolation takes.
+        bisect(footprint.ln(), (1e3 * footprint).ln(), |ln| total(ln.exp()) >= wanted).exp()
     }
 
     /// The waves at a time in s.
@@ -168,6 +188,12 @@ impl Mesh {
         let w = self.water.wind.friction_velocity;
         whitecap::mean_probability(w, 100.0 * gain * acceleration, 100.0 * rest)
     }
+}
+
+/// The share of a wave's variance that is left between the vertices of triangles, linear interpolation of a cosine, for a
+/// wave number times a cell: edges are a cell long, but for one in three, its diagonal.
+fn interpolated(phase: f64) -> f64 {
+    (3.0 + 2.0 * libm::j0(phase) + libm::j0(std::f64::consts::SQRT_2 * phase)) / 6.0
 }
 
 /// The mesh and the sea, a `name = value` a line.

@@ -67,6 +67,11 @@ impl Component {
         Self { amplitude: self.amplitude * share(self.wave_number, footprint).sqrt(), ..self }
     }
 
+    /// Variance of its slope.
+    pub(crate) fn slope_variance(&self) -> f64 {
+        0.5 * (self.amplitude * self.wave_number).powi(2)
+    }
+
     /// Variance of its vertical acceleration (Eq. 52), m^2/s^4.
     pub(crate) fn acceleration_variance(&self) -> f64 {
         0.5 * (self.amplitude * self.frequency * self.frequency).powi(2)
