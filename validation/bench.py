@@ -29,6 +29,9 @@ BSDFS: dict[str, dict[str, dict[str, Any]]] = {
         "prob_water, slopes": {"type": "prob_water", "slope_measure": "slope"},
         "prob_water, w* = 4": {"type": "prob_water", "friction_velocity": 4},
         "prob_water, ensemble": {"type": "prob_water", "surface": "ensemble"},
+        "prob_water, instance": {"type": "prob_water", "surface": "instance"},
+        "prob_water, instance of 512 waves": {"type": "prob_water", "surface": "instance", "components": 512},
+        "prob_water, footprint a texture": {"type": "prob_water", "footprint": {"type": "uniform", "value": 0.3}},
         "prob_water, no whitecaps": {"type": "prob_water", "whitecaps": False},
         "prob_water, no shadowing": {"type": "prob_water", "shadowing": False},
         "prob_water, no Gram-Charlier": {"type": "prob_water", "gram_charlier": False},
@@ -41,7 +44,8 @@ BSDFS: dict[str, dict[str, dict[str, Any]]] = {
         "roughconductor of the peer": ROUGHCONDUCTOR,
     },
 }
-WATERS = [name for name in BSDFS["prob_water"] if name.startswith("prob_water") and "ensemble" not in name]
+WATERS = [name for name, bsdf in BSDFS["prob_water"].items()
+          if name.startswith("prob_water") and not {"surface", "footprint"} & bsdf.keys()]
 #: Operation, numerator, denominator and the least ratio aimed at.
 AIMS = [("eval", "prob_water", "ocean_legacy", 2.0), ("sample", "prob_water", "ocean_legacy", 3.0),
         *(("sample", name, "roughconductor", 1.0) for name in WATERS)]

@@ -1,6 +1,6 @@
 """What is off costs nothing: instructions of the scalar core by callgrind, and operations of traced kernels.
 
-Run by `cargo xtask bench --off`.
+Run by `cargo xtask bench off`.
 """
 
 import shutil

@@ -1,6 +1,6 @@
 """The shape prob_water_surface: time and memory to build it, and what a ray onto it costs.
 
-python validation/bench_surface.py [--vertices N ...]; each case is a process of its own, so that its peak counts.
+Run by `cargo xtask bench surface [--vertices N ...]`; each case is a process of its own, so that its peak counts.
 """
 
 import argparse
@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-from mitsuba_setup import load_plugin, usable_llvm
+from mitsuba_setup import ROOT, load_plugin, usable_llvm
 
 RAYS = 1_000_000
 
@@ -69,6 +69,11 @@ def main() -> None:
             row = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
             print(f"{variant:12} {row['vertices']:9} {row['shape_s']:8.2f} {row['scene_s']:8.2f} {row['peak_mib']:9.0f} "
                   f"{row['bytes']:9.0f} {row.get('ns_per_ray', np.nan):7.0f}", flush=True)
+    print("\nA ray cast onto the sum of waves itself, exact, one thread")
+    done = subprocess.run(["cargo", "run", "--quiet", "--release", "-p", "prob-water", "--example", "cast"], cwd=ROOT,
+                          check=True, capture_output=True, text=True)
+    for row in map(json.loads, done.stdout.splitlines()):
+        print(f"{row['components']:5} waves {row['ns_per_ray']:9} ns/ray")
 
 
 if __name__ == "__main__":

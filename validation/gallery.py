@@ -6,7 +6,7 @@ from pathlib import Path
 import mitsuba as mi
 
 from mitsuba_setup import SEA
-from review_set import COMPARISONS, PICTURES, Comparison, Picture
+from review_set import COMPARISONS, PICTURES, WIDTHS, Chart, Comparison, Picture
 
 STYLE = """
 :root { color-scheme: light dark; }
@@ -28,6 +28,8 @@ FACTS = ["scene", "parameters", "size", "samples", "seconds", "variant", "render
 def write_page(directory: Path, target: Path) -> None:
     """Writes the page on all pictures of the review set that are in `directory` into `target`."""
     cards = [card(p, directory) for p in (*PICTURES, *COMPARISONS) if (directory / f"{p.name}.exr").is_file()]
+    if (directory / f"{WIDTHS.name}.png").is_file():
+        cards.append(figure(WIDTHS))
     target.write_text(
         "<!DOCTYPE html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n"
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
@@ -52,4 +54,12 @@ def card(picture: Picture | Comparison, directory: Path) -> str:
         f"<dt>files</dt><dd><a href='{picture.name}.exr'>{picture.name}.exr</a> (linear), "
         f"<a href='{picture.name}.png'>{picture.name}.png</a></dd>\n</dl>\n"
         f"{sea}</article>\n"
+    )
+
+
+def figure(chart: Chart) -> str:
+    """A chart with its words."""
+    return (
+        f"<article id='{chart.name}'>\n<a href='{chart.name}.png'><img src='{chart.name}.png' alt='{escape(chart.title)}'></a>\n"
+        f"<h2>{escape(chart.title)}</h2>\n<p>{escape(chart.caption)}</p>\n</article>\n"
     )

@@ -16,9 +16,10 @@ import mitsuba as mi
 import numpy as np
 
 import gallery
+import glitter_width
 from comparison import compare
 from mitsuba_setup import ROOT, SEA, SetupError, load_plugin, pick_variant, sea_of
-from review_set import COMPARISONS, PICTURES, Picture
+from review_set import COMPARISONS, PICTURES, WIDTHS, Picture
 from tone import EXPOSURE, to_bytes, tone_map
 
 # Samples are taken in passes, each with its own seed, so that the time left can be told.
@@ -54,6 +55,11 @@ def main() -> None:
     for comparison in COMPARISONS:
         if any(picture.name in (comparison.first, comparison.second) for picture in pictures):
             compare(comparison, arguments.out, replacing)
+    # A hundred thousand rays at a time: only traced variants are fast enough.
+    if not arguments.only and variant.startswith(("llvm", "cuda")):
+        print(f"{WIDTHS.name}: half a minute", flush=True)
+        with replacing(arguments.out / f"{WIDTHS.name}.png") as file:
+            glitter_width.draw(glitter_width.table(mi, seeds=2), file)
     with replacing(arguments.out / "index.html") as file:
         gallery.write_page(arguments.out, file)
     print(f"render: {arguments.out / 'index.html'}")

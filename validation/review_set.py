@@ -29,6 +29,15 @@ class Comparison:
     blur: float
 
 
+@dataclass(frozen=True)
+class Chart:
+    """A drawing beside the pictures."""
+
+    name: str
+    title: str
+    caption: str
+
+
 BEAUFORT = [
     ("calm", "No wind: the spectrum has no waves, and the facets' slopes are what Cox and Munk's law leaves at no wind. One "
      "soft image of the sun."),
@@ -63,7 +72,9 @@ PICTURES = [
         name="gale",
         scene="scenes/gale.xml",
         title="Whitecapped gale, Beaufort 8",
-        caption="Whitecaps stand on crests, where the water falls fastest, and cover 12 % of the sea.",
+        caption="Whitecaps stand on crests, where the water falls fastest, and cover 12 % of the sea. By the report they "
+        "reflect 22 % of the light, like wet sand, so they are not as white as foam in a photograph.",
+        exposure=8.0,
     ),
     Picture(
         name="close_up",
@@ -105,7 +116,7 @@ PICTURES = [
         name="from_above",
         scene="scenes/from_above.xml",
         title="Glitter from above: waves as geometry",
-        caption="A disk of sea, 300 m across, from 120 m up; w* = 24 cm/s, the sun 25 degrees from the zenith.",
+        caption="A disk of sea, 300 m across, from 120 m up; w* = 12 cm/s, the sun 25 degrees from the zenith.",
         exposure=20.0,
     ),
     Picture(
@@ -143,3 +154,10 @@ COMPARISONS = [
         blur=0.05,
     ),
 ]
+
+WIDTHS = Chart(
+    name="glitter_width",
+    title="The path widens with the wind as the slopes do",
+    caption="Root mean square of the azimuth of the glitter, as rendered from drawn waves and as the core's slope density has "
+    "it; the sun 25 degrees high, looks 18 to 32 degrees down from 30 m.",
+)

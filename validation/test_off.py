@@ -1,4 +1,4 @@
-"""What is off costs nothing in traced kernels (the scalar core: `cargo xtask bench --off`)."""
+"""What is off costs nothing in traced kernels (the scalar core: `cargo xtask bench off`)."""
 
 from bench_off import operations
 

@@ -1,14 +1,19 @@
-//! The throughput table: `validation/bench.py` times this plugin and, from their own environment, its peers.
+//! Measurements: `validation/bench.py` times this plugin and, from their own environment, its peers; the others look at one
+//! question each.
 
 use crate::{build, setup, util};
 use anyhow::Result;
 
-/// Builds the plugin, sets up the peers and measures; the arguments are the script's own.
+/// Builds the plugin, sets up what the topic needs and measures; further arguments are the script's own.
 pub fn bench(arguments: &[String]) -> Result<()> {
     build::build(&build::default_out())?;
-    setup::peer()?;
-    util::run(
-        util::command(setup::python()).arg("validation/bench.py").args(arguments),
-        "validation/bench.py",
-    )
+    let (script, arguments) = match arguments.split_first() {
+        Some((topic, rest)) if topic == "off" => ("validation/bench_off.py", rest),
+        Some((topic, rest)) if topic == "surface" => ("validation/bench_surface.py", rest),
+        _ => {
+            setup::peer()?;
+            ("validation/bench.py", arguments)
+        }
+    };
+    util::run(util::command(setup::python()).arg(script).args(arguments), script)
 }

@@ -28,6 +28,8 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and print the throughput table (options of validation/bench.py)
+  bench off         what costs nothing: instructions and kernels of what is switched off
+  bench surface     time and memory of the shape at 1, 4 and 16 million vertices (--vertices N ...)
   peer              create .venv-peer and install validation/requirements-peer.txt in it
   help              print this
 
