@@ -404,6 +404,7 @@ mod tests {
                 wind_direction: -1.0 / 3.0,
                 footprint: 1e-7,
                 surface: Surface::Instance,
+                average: Average::Report,
                 components: 20,
                 instances: 1_000_000,
                 seed: 9_007_199_254_740_991,

@@ -2,7 +2,7 @@
 
 use crate::{refuse, succeed};
 use exr::prelude::*;
-use prob_water::{Body, Fresnel, Parameters, Readings, SlopeMeasure, Surface, Wind};
+use prob_water::{Average, Body, Fresnel, Parameters, Readings, SlopeMeasure, Surface, Wind};
 use std::fs;
 use std::path::Path;
 
@@ -48,6 +48,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         wind_direction: -100.0 / 3.0,
         footprint: 0.21,
         surface,
+        average: Average::Report,
         components: 7,
         instances: 30,
         seed: 9_007_199_254_740_991,
