@@ -72,7 +72,7 @@ PICTURES = [
         name="gale",
         scene="scenes/gale.xml",
         title="Whitecapped gale, Beaufort 8",
-        caption="Whitecaps stand on crests, where the water falls fastest, and cover 12 % of the sea. By the report they "
+        caption="Whitecaps stand on crests, where the water falls fastest, and cover 11 % of the sea. By the report they "
         "reflect 22 % of the light, like wet sand, so they are not as white as foam in a photograph.",
         exposure=8.0,
     ),

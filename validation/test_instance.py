@@ -15,6 +15,8 @@ SEAS = [
     {"friction_velocity": 8.0},
     {"friction_velocity": 24.0, "components": 20, "wind_direction": 30.0, "seed": 4, "time": 3.5},
     {"friction_velocity": 56.0, "slope_measure": "slope", "fresnel": "exact", "footprint": 0.3},
+    # Waves too gentle for whitecaps, whatever Eq. 51 says of this wind.
+    {"wind_speed": 25.0, "footprint": "inf"},
 ]
 
 
@@ -119,6 +121,57 @@ def test_a_footprint_texture_is_the_footprint(use, variant, wind):
                                    "whitecaps": {"type": "uniform", "value": share}}), i, o)[0]
         for share in (0.0, 1.0, 0.3))
     np.testing.assert_allclose(some, 0.7 * none + 0.3 * all_, rtol=1e-4, atol=1e-6)
+
+
+def places(mi, parameters, i, o, rng):
+    """f cos(theta_o) at random places of a square of 400 m."""
+    import drjit as dr
+
+    bsdf, context = mi.load_dict({"type": "prob_water", **parameters}), mi.BSDFContext()
+    where = rng.uniform(-200, 200, (len(i), 2)).astype(np.float32)
+    frame = mi.Frame3f(mi.Vector3f(1, 0, 0), mi.Vector3f(0, 1, 0), mi.Vector3f(0, 0, 1))
+    if dr.is_jit_v(mi.Float):
+        si = dr.zeros(mi.SurfaceInteraction3f, len(i))
+        si.wi, si.p, si.sh_frame = mi.Vector3f(i.T), mi.Point3f(where[:, 0], where[:, 1], 0), frame
+        return np.array(bsdf.eval(context, si, mi.Vector3f(o.T)))[0]
+    si, found = mi.SurfaceInteraction3f(), []
+    si.sh_frame = frame
+    for a, b, x in zip(i.tolist(), o.tolist(), where.tolist()):
+        si.wi, si.p = mi.Vector3f(a), mi.Point3f(*x, 0)
+        found.append(bsdf.eval(context, si, mi.Vector3f(b))[0])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("wind, allowed", [(8.0, 0.06), (24.0, 0.03)])
+def test_a_drawn_sea_keeps_its_slopes_under_a_texture(use, wind, allowed):
+    """Where the footprint's texture says 0.15 m, waves fade around 2 D instead of ending there: on average the same."""
+    mi, rng = use("llvm_ad_rgb"), np.random.default_rng(4)
+    down = np.tile(direction(0.0, 0.0), (4000, 1)).astype(np.float32)
+    for view in (0.0, 20.0, 40.0):
+        look = np.tile(direction(view, 30.0), (4000, 1)).astype(np.float32)
+        sea = {"surface": "instance", "friction_velocity": wind, "components": 400}
+        means = [np.mean([places(mi, {**sea, "seed": seed, "footprint": footprint}, down, look, rng) for seed in range(12)])
+                 for footprint in ({"type": "uniform", "value": 0.15}, 0.15)]
+        print(f"\nw* {wind} view {view}: {means[0] / means[1] - 1:+.3f}")
+        assert abs(means[0] / means[1] - 1) < allowed
+
+
+@pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb"])
+@pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf"), 1e-30])
+@pytest.mark.parametrize("surface", ["flat", "instance"])
+def test_no_texture_value_breaks_anything(use, variant, value, surface):
+    """What is no length is the smallest footprint, what is no probability lies within 0 and 1, in every variant."""
+    mi, rng = use(variant), np.random.default_rng(2)
+    i, o = (np.tile(direction(t, p), (5, 1)).astype(np.float32) for t, p in ((20.0, 0.0), (20.0, 180.0)))
+    texture = {"type": "uniform", "value": value}
+    for name in ("footprint", "whitecaps"):
+        found = places(mi, {"surface": surface, "wind_speed": 5.0, name: texture}, i, o, rng)
+        wanted = {"footprint": 1e-6 if not value > 1 else 1e20, "whitecaps": 1.0 if value > 1 else 0.0}[name]
+        expected = places(mi, {"surface": surface, "wind_speed": 5.0, name: {"type": "uniform", "value": wanted}}, i, o,
+                          np.random.default_rng(2) if name == "footprint" else rng)
+        assert np.isfinite(found).all() and (found >= 0).all()
+        if surface == "flat":
+            np.testing.assert_allclose(found, expected, rtol=1e-5)
 
 
 @pytest.mark.parametrize("variant, integrator, pixel", [

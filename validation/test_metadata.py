@@ -61,6 +61,33 @@ def test_the_command_reproduces_a_render(use, tmp_path, parameters):
     assert np.max(np.abs(found / expected - 1)) < 1e-4
 
 
+def test_a_footprint_that_varies_has_to_be_told(use, tmp_path):
+    """A mesh's BSDF has a footprint of its own at every place: the command asks for it, and then gives the same f."""
+    mi = use("scalar_rgb")
+    shape = mi.load_dict({"type": "prob_water_surface", "wind_speed": 9.0, "seed": 5, "radius": 30.0, "vertices": 4000,
+                          "whitecaps": False})
+    scene = mi.load_dict(SCENE | {"sea": shape})
+    bsdf = scene.shapes()[0].bsdf()
+    bitmap = mi.Bitmap(np.array(mi.render(scene, spp=1), dtype=np.float32))
+    bitmap.metadata()[SEA] = sea_of(bsdf)
+    exr = tmp_path / "render.exr"
+    bitmap.write(str(exr))
+    si = scene.ray_intersect(mi.Ray3f([3, 4, 50], [0, 0, -1]))
+    footprint = shape.eval_attribute_1("vertex_footprint", si)
+    si.wi, o = mi.Vector3f(direction(20.0, 30.0).tolist()), direction(25.0, 220.0)
+    expected = bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(o.tolist()))[0] / o[2]
+    row = "ix,iy,iz,ox,oy,oz\n" + ",".join(f"{x:.17g}" for x in (*si.wi, *o)) + "\n"
+    run = [COMMAND, "brdf", "--from", exr]
+    refused = subprocess.run(run, input=row, capture_output=True, text=True)
+    assert refused.returncode == 2 and "footprint = varies is not a number" in refused.stderr, refused.stderr
+    done = subprocess.run([*run, "--footprint", repr(footprint)], input=row, capture_output=True, text=True, check=True)
+    assert abs(float(done.stdout.split(",")[-1]) / expected - 1) < 1e-3
+    # And the waves themselves.
+    waves = subprocess.run([COMMAND, "surface", "--from", exr, "--footprint", "0.15", "--draws", "stratified", "--fade",
+                            "--bounds"], capture_output=True, text=True)
+    assert waves.returncode == 0, waves.stderr
+
+
 def test_a_render_without_a_sea_is_refused(use, tmp_path):
     """The command says which attributes there are instead."""
     mi = use("scalar_rgb")

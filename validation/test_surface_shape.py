@@ -145,12 +145,52 @@ def resolved(wind, footprint):
     ({"instances": 5}, "instances = 5 has no meaning here"),
     ({"wind_speed": 99.0}, "wind_speed = 99 is out of range"),
     ({"wave_height": 1.0}, "wave_height"),
+    ({"footprint": 1e-310}, "footprint = "),
+    ({"opening": 1e-5}, "opening = 0.00001 is out of range"),
+    ({"center": [0.0, 0.0, 1.0]}, "center has z = 1"),
+    ({"average": "report"}, "average = report has no meaning here"),
+    ({"flip_normals": True}, "flip_normals = true has no meaning here"),
+    ({"face_normals": True}, "face_normals = true has no meaning here"),
+    ({"to_world": ("scale", [1, 1, 3])}, "to_world scales, shears, mirrors"),
+    ({"to_world": ("scale", [-1, 1, 1])}, "to_world scales, shears, mirrors"),
+    ({"to_world": ("translate", [0, 0, float("inf")])}, "to_world"),
 ])
 def test_refusals(use, variant, words, message):
     mi = use(variant)
+    if "to_world" in words:
+        name, value = words["to_world"]
+        words = {"to_world": getattr(mi.ScalarTransform4f(), name)(value)}
     with pytest.raises(RuntimeError) as error:
         surface(mi, **words)
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_one_sea_is_described_once(use, variant):
+    """A nested prob_water takes the shape's sea, adds what is not the sea, and refuses the rest; the shape's own is the same."""
+    mi = use(variant)
+    base = {"type": "prob_water_surface", "beaufort": 6, "radius": 20.0, "seed": 3, "vertices": 3000}
+    own, plain, exact = (mi.load_dict(base | nested) for nested in (
+        {}, {"b": {"type": "prob_water"}}, {"b": {"type": "prob_water", "fresnel": "exact", "water_leaving": 0.02}}))
+    assert str(own.bsdf()) == str(plain.bsdf()) != str(exact.bsdf())
+    for line in ("beaufort = 6", "seed = 3", "components = 512", 'footprint = "varies"'):
+        assert line in str(own.bsdf())
+    assert 'fresnel = "exact"' in str(exact.bsdf()) and "water_leaving" in str(exact.bsdf())
+    # The sea cannot be changed through its BSDF, time goes to both.
+    parameters = mi.traverse(own)
+    assert not any(name in parameters for name in ("bsdf.beaufort", "bsdf.wind_direction", "bsdf.time"))
+    parameters["time"] = 4.0
+    parameters.update()
+    assert str(own).count("time = 4\n") == 2
+    for nested in ({"wind_speed": 3.0}, {"seed": 3}, {"footprint": 0.3}, {"whitecaps": False}):
+        with pytest.raises(RuntimeError, match=f"{next(iter(nested))} is given on the BSDF of a prob_water_surface"):
+            mi.load_dict(base | {"b": {"type": "prob_water", **nested}})
+    with pytest.raises(RuntimeError, match="ior is given on the BSDF"):
+        mi.load_dict(base | {"ior": 1.34, "b": {"type": "prob_water", "ior": 1.34}})
+    shared = mi.load_dict({"type": "prob_water"})
+    mi.load_dict(base | {"b": shared})
+    with pytest.raises(RuntimeError, match="cannot lie on two"):
+        mi.load_dict(base | {"b": shared})
 
 
 @pytest.mark.parametrize("variant", VARIANTS)

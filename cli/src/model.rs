@@ -56,7 +56,10 @@ impl<'d> Model<'d> {
             None => own,
         };
         if own != wanted {
-            let infinite = |item: &Item| item.value().is_ok_and(|value| value.to_string().trim() == "inf");
+            let infinite = |item: &Item| {
+                let number = item.value().ok().and_then(|value| value.to_string().trim().parse::<f64>().ok());
+                number.is_some_and(f64::is_infinite)
+            };
             self.items.retain(|item| match item.name {
                 "surface" => false,
                 "footprint" => !infinite(item),

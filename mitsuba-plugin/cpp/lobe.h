@@ -122,6 +122,9 @@ template <typename Float_> struct Lobe {
         Vector3f local_i;
         Point2f seen_i, seen_o;
         Mask lit;
+        /// On a wave: what its area shown to the source is, over the level surface's.
+        bool level = true;
+        Float shown;
     };
 
     template <typename T> Geometry<T> geometry(const Vector3f &i, const Vector3f &o, const Frame &frame = {}) const {
@@ -160,7 +163,8 @@ template <typename Float_> struct Lobe {
         return g;
     }
 
-    /// f cos(theta_o), Eqs. 55-79, of some of its parts, each with its share of the surface.
+    /// f cos(theta_o), Eqs. 55-79, of some of its parts, each with its share of the surface; on a wave that of the level
+    /// surface, as the core's on_wave.
     template <typename T> Float eval(const Geometry<T> &g, Parts parts) const {
         namespace dr = drjit;
         Float f = 0.f;
@@ -173,7 +177,10 @@ template <typename Float_> struct Lobe {
         } else if (parts.whitecaps) {
             f = whitecap_fraction * whitecap_brdf;
         }
-        return dr::select(g.lit, f * g.cos_o, 0.f);
+        f *= g.cos_o;
+        if (!g.level)
+            f *= g.shown;
+        return dr::select(g.lit, f, 0.f);
     }
 
     /// Density, 1/sr, with which sample() draws o.
@@ -318,7 +325,9 @@ private:
         const Vector3f &n = frame.n;
         g.cos_i = g.local_i.z();
         g.cos_o = dr::dot(o, n);
-        g.lit = g.cos_i > 0.f && g.cos_o > 0.f;
+        g.lit = g.cos_i > 0.f && g.cos_o > 0.f && i.z() > 0.f && o.z() > 0.f;
+        g.level = false;
+        g.shown = g.cos_i / larger(n.z() * i.z(), Tiny);
         g.seen_i = { dr::fmsub(i.x(), n.z(), i.z() * n.x()), dr::fmsub(i.y(), n.z(), i.z() * n.y()) };
         g.seen_o = { dr::fmsub(o.x(), n.z(), o.z() * n.x()), dr::fmsub(o.y(), n.z(), o.z() * n.y()) };
 

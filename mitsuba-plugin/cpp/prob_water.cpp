@@ -6,6 +6,7 @@
 #include <mitsuba/render/texture.h>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <sstream>
 
@@ -87,13 +88,15 @@ Wind-roughened water (:monosp:`prob_water`)
    - Footprint D in m: waves shorter than 2 D are facets. The string "inf" counts all waves; a texture gives D from
      place to place; the string "pixel" takes the side of a square as large as the pixel on the water: from ray
      differentials where they exist (scalar variants with the :monosp:`direct` integrator, a sample's share of the
-     pixel), else from :monosp:`pixel_angle`. (Default: inf, or 0.15 where the surface is not flat)
+     pixel), else from :monosp:`pixel_angle`. Where it changes, an instance has no waves shorter than 0.3 m: its D is at
+     least 0.15. What is no length is as small as can be. (Default: inf, or 0.15 where the surface is not flat)
    - |exposed|
 
  * - pixel_angle
    - |float|
    - For footprint "pixel": the angle in degrees that a pixel subtends at the camera, the field of view over the pixels
-     across. (Default: unknown; without differentials the footprint then is that of a number left out)
+     across. The distance counts from where the ray starts: of water seen in a mirror, from the mirror. (Default: unknown;
+     without differentials the footprint then is that of a number left out)
 
  * - surface
    - |string|
@@ -110,6 +113,7 @@ Wind-roughened water (:monosp:`prob_water`)
    - |float|
    - The vocabulary's words for drawn waves: how many there are, which, when (s), over which depth and fetch (m).
      Components, depth and fetch matter to the ensemble as well. (Default: 5, 0, 0, inf, inf)
+   - time: |exposed| (for an instance)
 
  * - instances
    - |int|
@@ -153,11 +157,12 @@ Wind-roughened water (:monosp:`prob_water`)
    - |spectrum| or |texture|
    - Diffuse reflectance of the water below its surface, under what the surface reflects: the share of the light
      entering the water that comes out again. (Default: none, black water)
+   - |exposed|, |differentiable|
 
 The sea as a renderer sees it from where single waves are not resolved: the water BRDF of the report
 AFRL-RH-FS-TR-2023-0002, facets with Cox and Munk's slopes, whitecaps between them. One-sided, black
 from below. It has two components: 0 the facets (glossy), 1 the whitecaps and the light from below (diffuse), if there
-are any. An instance takes its x and y, in m, along the shading frame's s and t from the origin of the world.
+are any. An instance is not for views to the horizon: its waves hide nothing of each other. It takes its x and y, in m, along the shading frame's s and t from the origin of the world.
 
 .. tabs::
     .. code-tab:: xml
@@ -200,17 +205,21 @@ public:
     }
 
     void take_sea(const Properties &sea) override {
+        // Scenes load on several threads.
+        static std::mutex mutex;
+        std::lock_guard<std::mutex> guard(mutex);
+        if (m_lent)
+            Throw("prob_water: one BSDF cannot lie on two prob_water_surfaces, each has a sea of its own");
         // One sea is described once.
-        constexpr const char *Sea[] = { "wind_speed", "wind_height", "friction_velocity", "beaufort", "wind_direction",
-                                        "footprint", "surface", "components", "instances", "seed", "time", "depth",
-                                        "fetch", "water", "whitecaps" };
         for (const std::string &name : m_given)
-            if (sea.has_property(name) || std::find(std::begin(Sea), std::end(Sea), name) != std::end(Sea))
+            if (sea.has_property(name) || prob_water::describes_sea(name))
                 Throw("prob_water: %s is given on the BSDF of a prob_water_surface: give it on the shape", name);
         take(sea);
         m_lent = true;
         configure();
     }
+
+    void set_time(double time) override { (*m_water)->set_time(time); }
 
     void traverse(TraversalCallback *cb) override {
         for (auto &[name, value] : m_exposed)
@@ -301,15 +310,13 @@ public:
         Float whitecaps = whitecap_share(here(si, active));
         UnpolarizedSpectrum diffuse = m_lobe.whitecap_brdf * dr::Pi<ScalarFloat> * whitecaps;
         if (m_water_leaving)
-            diffuse += m_water_leaving->eval(si, active) * (1.f - whitecaps);
+            diffuse += within_one(m_water_leaving->eval(si, active)) * (1.f - whitecaps);
         return depolarizer<Spectrum>(diffuse) & active;
     }
 
     std::string to_string() const override {
         std::ostringstream text;
         text << "ProbWater[\n  " << string::indent(std::string(water().describe()), 2);
-        if (!varied().empty())
-            text << "\n  # footprint = " << varied();
         if (m_whitecap_texture)
             text << "\n  # whitecaps = a texture";
         if (m_water_leaving) {
@@ -455,7 +462,8 @@ private:
                 seen = m_pixel_angle * si.t * dr::rsqrt(dr::maximum(si.wi.z(), 1e-4f));
             d = dr::select(d > 0.f, d, seen);
         } else {
-            d = m_footprint->eval_1(si, active);
+            // What is no length is as small as can be.
+            d = prob_water::larger(m_footprint->eval_1(si, active), 1e-30f);
         }
         // Shorter waves than the sea's are not drawn.
         return m_drawn_waves ? dr::maximum(d, m_own_footprint) : d;
@@ -482,7 +490,7 @@ private:
                     at.lobe.whitecap_fraction = whitecap;
             }
             if (m_whitecap_texture)
-                at.lobe.whitecap_fraction = dr::clip(m_whitecap_texture->eval_1(si, active), 0.f, 1.f);
+                at.lobe.whitecap_fraction = within_one(m_whitecap_texture->eval_1(si, active));
         } else if (m_places) {
             constexpr float None = std::numeric_limits<float>::quiet_NaN();
             ProbWaterPlace place{ { 0., 0. }, None, None };
@@ -496,10 +504,15 @@ private:
             if (!varied().empty())
                 place.footprint = footprint(si, active);
             if (m_whitecap_texture)
-                place.whitecaps = m_whitecap_texture->eval_1(si, active);
+                place.whitecaps = within_one(m_whitecap_texture->eval_1(si, active));
             prob_water_spot(&water(), &place, &at.spot);
         }
         return at;
+    }
+
+    /// Within 0 and 1; what is no number is 0.
+    template <typename T> static T within_one(const T &value) {
+        return prob_water::smaller(prob_water::larger(value, 0.f), 1.f);
     }
 
     Float whitecap_share(const Here &at) const {
@@ -516,17 +529,10 @@ private:
             auto run = [&](auto type) {
                 auto g = at.lobe.template geometry<decltype(type)>(wi, wo, at.frame);
                 Float value = 0.f, pdf = 0.f;
-                if (Value) {
+                if (Value)
                     value = m_afar.rows ? m_afar.eval(at.lobe, wi, wo, parts) : at.lobe.eval(g, parts);
-                    if (!at.frame.level)
-                        value = dr::select(wi.z() > 0.f && wo.z() > 0.f,
-                                           value * g.cos_i / prob_water::larger(at.frame.n.z() * wi.z(), Lobe::Tiny), 0.f);
-                }
-                if (Pdf) {
+                if (Pdf)
                     pdf = at.lobe.pdf(g, parts);
-                    if (!at.frame.level)
-                        pdf = dr::select(wo.z() > 0.f, pdf, 0.f);
-                }
                 return std::pair<Float, Float>(value, pdf);
             };
             // Only Gram-Charlier's polynomial asks for digits to spare.
@@ -549,7 +555,7 @@ private:
         auto [value, pdf] = surface<Value, Pdf>(at, si.wi, wo, on.parts);
         if (!on.below)
             return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
-        UnpolarizedSpectrum below = m_water_leaving->eval(si, active);
+        UnpolarizedSpectrum below = within_one(m_water_leaving->eval(si, active));
         if (Pdf)
             pdf = dr::lerp(pdf, cosine_pdf(si.wi, wo), below_share(on, at, si.wi, below));
         return { spectrum(value + from_below(at, si.wi, wo, below)) & active, dr::select(active, pdf, 0.f) };
@@ -562,7 +568,7 @@ private:
         Float share = 0.f;
         Mask diffuse = false;
         if (on.below) {
-            below = m_water_leaving->eval(si, active);
+            below = within_one(m_water_leaving->eval(si, active));
             share = below_share(on, at, si.wi, below);
             diffuse = sample1 < share;
             sample1 = dr::select(diffuse, 0.f, dr::minimum((sample1 - share) * dr::rcp(dr::maximum(1.f - share, Lobe::Small)),
@@ -600,11 +606,6 @@ private:
             auto g = at.lobe.template geometry<Float>(si.wi, bs.wo, at.frame);
             bs.pdf = at.lobe.pdf(g, on.parts);
             value = m_afar.rows ? m_afar.eval(at.lobe, si.wi, bs.wo, on.parts) : at.lobe.eval(g, on.parts);
-            if (!at.frame.level) {
-                value *= g.cos_i / prob_water::larger(at.frame.n.z() * si.wi.z(), Lobe::Tiny);
-                active &= bs.wo.z() > 0.f;
-                bs.pdf = dr::select(active, bs.pdf, 0.f);
-            }
         }
         active &= bs.pdf > 0.f;
         return finish(bs, spectrum(value / bs.pdf), whitecap, active);

@@ -25,7 +25,8 @@ A drawn sea (:monosp:`prob_water_surface`)
 
  * - center
    - |point|
-   - Where the cells are smallest, m: x and y in the shape's own coordinates, below the camera, say. (Default: 0, 0)
+   - Where the cells are smallest, m: x and y in the shape's own coordinates, below the camera, say; z is 0. (Default:
+     0, 0, 0)
 
  * - radius
    - |float|
@@ -67,7 +68,7 @@ A drawn sea (:monosp:`prob_water_surface`)
 
  * - to_world
    - |transform|
-   - From the shape's own coordinates, metres with z up, to the world's. (Default: none)
+   - From the shape's own coordinates, metres with z up, to the world's: a rotation and a shift. (Default: none)
 
  * - (nested plugin)
    - |bsdf|
@@ -80,7 +81,8 @@ A drawn sea (:monosp:`prob_water_surface`)
    - |exposed|
 
 One realised sea as a triangle mesh. Cells and with them D grow with the distance: what the mesh cannot show is facets in
-the BSDF, and no wave ends at a line. The shading frame's s is the shape's +x everywhere.
+the BSDF, and no wave ends at a line. The shading frame's s is the shape's +x everywhere. In a shapegroup its instances must
+not be transformed: Mitsuba interpolates vertex attributes in the wrong place there.
 
 .. tabs::
     .. code-tab:: xml
@@ -106,6 +108,10 @@ public:
     using typename Base::FloatStorage;
 
     ProbWaterSurface(const Properties &props) : Base(props), m_mesh(configure(props)), m_time(m_mesh->time()) {
+        check_rigid(m_to_world.scalar());
+        for (const char *flag : { "flip_normals", "face_normals" })
+            if (props.get<bool>(flag, false))
+                Throw("prob_water_surface: %s = true has no meaning here: normals are the waves'", flag);
         {
             prob_water::Level level = m_mesh->level();
             m_vertex_count = (uint32_t) level.footprints.size();
@@ -126,8 +132,11 @@ public:
     }
 
     void parameters_changed(const std::vector<std::string> &keys) override {
-        if (!keys.empty() && std::find(keys.begin(), keys.end(), "time") == keys.end())
+        if (!keys.empty() && std::find(keys.begin(), keys.end(), "time") == keys.end()) {
+            // What was set together with a refused value of something else.
+            m_time = m_mesh->time();
             return Base::parameters_changed(keys);
+        }
         try {
             refuse([&] { m_mesh->set_time(m_time); });
         } catch (...) {
@@ -136,6 +145,8 @@ public:
             throw;
         }
         fill();
+        if (auto *takes = dynamic_cast<prob_water::TakesSea *>(m_bsdf.get()))
+            takes->set_time(m_time);
         std::vector<std::string> moved = keys;
         moved.insert(moved.end(), { "vertex_positions", "vertex_normals" });
         Base::parameters_changed(moved);
@@ -158,6 +169,18 @@ private:
         }
     }
 
+    /// Waves stay as steep as they are, and z stays up for them.
+    static void check_rigid(const ScalarAffineTransform4f &to_world) {
+        ScalarVector3f x = to_world * ScalarVector3f(1.f, 0.f, 0.f), y = to_world * ScalarVector3f(0.f, 1.f, 0.f),
+                       z = to_world * ScalarVector3f(0.f, 0.f, 1.f);
+        ScalarPoint3f o = to_world * ScalarPoint3f(0.f);
+        auto near = [](ScalarFloat a, ScalarFloat b) { return std::abs(a - b) < 1e-4f; };
+        bool rigid = near(dr::norm(x), 1.f) && near(dr::norm(y), 1.f) && near(dr::dot(x, y), 0.f) &&
+                     near(dr::norm(dr::cross(x, y) - z), 0.f) && std::isfinite(o.x() + o.y() + o.z());
+        if (!rigid)
+            Throw("prob_water_surface: to_world scales, shears, mirrors or is not finite: allowed are rotations and shifts");
+    }
+
     static FloatStorage load(const rust::Vec<float> &values) {
         return dr::load<FloatStorage>(values.data(), values.size());
     }
@@ -174,6 +197,8 @@ private:
             rust::Box<prob_water::MeshOptions> options = prob_water::mesh_options();
             words(props, prob_water::set_word(*options));
             auto center = props.get<ScalarPoint3f>("center", ScalarPoint3f(0.f));
+            if (center.z() != 0.f)
+                Throw("prob_water_surface: center has z = %s: allowed is 0", center.z());
             options->set_center(center.x(), center.y());
             return options->configure();
         });

@@ -13,6 +13,8 @@ struct TakesSea {
     /// Takes over parameters of the vocabulary as the shape gives them, before anything is rendered. Throws where the
     /// BSDF was given one of them itself, or any other that describes the sea.
     virtual void take_sea(const mitsuba::Properties &sea) = 0;
+    /// Tells it the time in s that the shape now shows.
+    virtual void set_time(double time) = 0;
 };
 
 } // namespace prob_water

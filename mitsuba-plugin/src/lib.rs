@@ -4,7 +4,7 @@ mod evaluate;
 mod surface;
 
 use prob_water::real::IERFC;
-use prob_water::vocabulary::{Builder, ENTRIES, Value};
+use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
 use prob_water::{Average, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Surface, whitecap};
 use std::f64::consts::{PI, TAU};
 
@@ -86,6 +86,8 @@ mod ffi {
         fn configure(self: &Options, varied: &str) -> Result<Box<Water>>;
         /// Every name of the vocabulary.
         fn vocabulary() -> Vec<String>;
+        /// Whether a word of it describes the sea, and not how its surface reflects.
+        fn describes_sea(name: &str) -> bool;
 
         /// A configured sea.
         type Water;
@@ -98,6 +100,8 @@ mod ffi {
         fn number(self: &Water, name: &str) -> f64;
         /// `name = value` lines of the parameters and of what follows from them.
         fn describe(self: &Water) -> String;
+        /// Changes what `describe` tells of the time.
+        fn set_time(self: &mut Water, time: f64);
     }
 }
 
@@ -110,6 +114,10 @@ fn options() -> Box<Options> {
 
 fn vocabulary() -> Vec<String> {
     ENTRIES.iter().map(|e| e.name.to_string()).collect()
+}
+
+fn describes_sea(name: &str) -> bool {
+    !OPTICS.contains(&name)
 }
 
 impl Options {
@@ -131,7 +139,13 @@ impl Options {
         let mut lobe = water.lobe;
         let waves = match water.parameters.surface {
             Surface::Flat => Waves::Level,
-            Surface::Instance => Waves::Drawn(InstanceLobe::new(&water)),
+            Surface::Instance => {
+                // Every place has its own.
+                lobe.whitecap_fraction = 0.0;
+                let sea =
+                    if varied.is_empty() { InstanceLobe::new(&water) } else { InstanceLobe::fading(&water) };
+                Waves::Drawn(sea)
+            }
             Surface::Ensemble if varied.is_empty() => {
                 let afar = EnsembleLobe::new(&water)?;
                 lobe = afar.sampler;
@@ -238,11 +252,11 @@ impl Water {
     }
 
     fn drawn_waves(&self) -> ffi::DrawnWaves {
-        let Waves::Drawn(_) = self.waves else {
+        let Waves::Drawn(sea) = &self.waves else {
             return ffi::DrawnWaves { drawn: false, onset: [0.0; 2], cells: vec![] };
         };
         let time = self.water.parameters.time;
-        let wave = |c: prob_water::waves::Component| {
+        let wave = |c: &prob_water::waves::Component| {
             let (sin, cos) = c.azimuth.sin_cos();
             let (k, omega) = (c.wave_number / TAU, c.frequency);
             let turns = ((c.phase + omega * time) / TAU).fract();
@@ -251,7 +265,7 @@ impl Water {
         ffi::DrawnWaves {
             drawn: true,
             onset: whitecap::onset(self.water.wind.friction_velocity).map(|a| 0.01 * a),
-            cells: InstanceLobe::components(&self.water).into_iter().flat_map(wave).collect(),
+            cells: sea.components().iter().flat_map(wave).collect(),
         }
     }
 
@@ -263,6 +277,16 @@ impl Water {
     }
 
     fn describe(&self) -> String {
-        self.water.to_string()
+        let text = self.water.to_string();
+        if self.facets.is_none() {
+            return text;
+        }
+        // A word that is refused unless one says for which footprint.
+        let own = format!("\nfootprint = {}\n", self.water.parameters.footprint);
+        text.replacen(&own, "\nfootprint = \"varies\"\n", 1)
+    }
+
+    fn set_time(&mut self, time: f64) {
+        self.water.parameters.time = time;
     }
 }

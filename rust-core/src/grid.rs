@@ -147,14 +147,14 @@ impl Grid {
         if !(radius > 0.0 && radius <= 1e6) {
             return refuse("radius", radius, "above 0 m, up to 1e6 m");
         }
-        if !(footprint > 0.0 && footprint <= radius) {
-            return refuse("footprint", footprint, "above 0 m, up to the radius");
+        if !(footprint >= 1e-6 && footprint <= radius) {
+            return refuse("footprint", footprint, "1e-6 m up to the radius");
         }
         if !azimuth.is_finite() {
             return refuse("azimuth", azimuth, "any finite angle, degrees");
         }
-        if !(opening > 0.0 && opening <= 360.0) {
-            return refuse("opening", opening, "above 0 degrees, up to 360");
+        if !(0.001..=360.0).contains(&opening) {
+            return refuse("opening", opening, "0.001 to 360 degrees");
         }
         if vertices > MOST_VERTICES {
             return refuse("vertices", vertices, format!("up to {MOST_VERTICES}"));
@@ -194,7 +194,7 @@ impl Grid {
     /// Where the vertices of a ring are, m, rounded to float32.
     pub fn places(&self, ring: &Ring) -> impl Iterator<Item = [f32; 2]> {
         let Layout { center: [x, y], azimuth, opening, .. } = self.layout;
-        let start = (azimuth - 0.5 * opening).to_radians();
+        let start = (azimuth % 360.0 - 0.5 * opening).to_radians();
         let step = opening.to_radians() / f64::from(ring.segments.max(1));
         let radius = ring.radius;
         (0..self.on(ring)).map(move |i| {

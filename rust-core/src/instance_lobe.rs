@@ -11,6 +11,7 @@ use crate::{Lobe, Real, Water};
 #[derive(Debug, Clone)]
 pub struct InstanceLobe {
     water: Water,
+    components: Vec<Component>,
     surface: Surface,
 }
 
@@ -26,13 +27,24 @@ pub struct Spot {
 impl InstanceLobe {
     /// The first of the seas that the seed draws, at the parameters' time.
     pub fn new(water: &Water) -> Self {
-        let surface = Surface::new(Self::components(water).into_iter(), water.parameters.time);
-        Self { water: *water, surface }
+        Self::of(water, Ensemble::new(water))
+    }
+
+    /// The same for footprints that change from place to place, from the parameters' one upwards: with the waves that
+    /// fade there.
+    pub fn fading(water: &Water) -> Self {
+        Self::of(water, Ensemble { waves: water.fading_waves(), ..Ensemble::new(water) })
+    }
+
+    fn of(water: &Water, sea: Ensemble) -> Self {
+        let components: Vec<_> = sea.components(0).1.collect();
+        let surface = Surface::new(components.iter().copied(), water.parameters.time);
+        Self { water: *water, components, surface }
     }
 
     /// The waves that make the sea.
-    pub fn components(water: &Water) -> Vec<Component> {
-        Ensemble::new(water).components(0).1.collect()
+    pub fn components(&self) -> &[Component] {
+        &self.components
     }
 
     /// The sea at a place in m. With a footprint in m the waves too short for it are left to the facets.
@@ -46,8 +58,7 @@ impl InstanceLobe {
 
     /// Whether a whitecap can stand anywhere: none can where all crests together are not steep enough.
     pub fn has_whitecaps(&self) -> bool {
-        let steepest: f64 =
-            Self::components(&self.water).iter().map(|c| c.amplitude * c.frequency * c.frequency).sum();
+        let steepest: f64 = self.components.iter().map(|c| c.amplitude * c.frequency * c.frequency).sum();
         self.water.whitecap_probability(-steepest) > 0.0
     }
 

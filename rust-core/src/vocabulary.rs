@@ -71,6 +71,10 @@ pub const ENTRIES: [Entry; 23] = [
 /// The parameters that tell the wind: one of them is enough, but for the height of a speed.
 pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
 
+/// The parameters that do not describe the sea, but how its surface reflects.
+pub const OPTICS: [&str; 8] =
+    ["average", "wavelength", "ior", "fresnel", "slope_measure", "readings", "shadowing", "gram_charlier"];
+
 /// A value as scene files, flags and C hand it over.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {

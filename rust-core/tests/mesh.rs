@@ -66,7 +66,8 @@ fn triangles_cover_the_plane_once() {
         let last = mesh.grid.rings.last().unwrap();
         assert_eq!(last.radius, layout.radius);
         for ring in &mesh.grid.rings[1..] {
-            assert!((CELLS * ring.radius * mesh.grid.growth).max(0.15) - ring.footprint < 1e-9);
+            let expected = (CELLS * ring.radius * mesh.grid.growth).max(0.15);
+            assert!((expected - ring.footprint).abs() < 1e-9);
         }
     }
 }
