@@ -30,7 +30,6 @@ BSDFS: dict[str, dict[str, dict[str, Any]]] = {
         "prob_water, w* = 4": {"type": "prob_water", "friction_velocity": 4},
         "prob_water, ensemble": {"type": "prob_water", "surface": "ensemble"},
         "prob_water, instance": {"type": "prob_water", "surface": "instance"},
-        "prob_water, instance of 512 waves": {"type": "prob_water", "surface": "instance", "components": 512},
         "prob_water, footprint a texture": {"type": "prob_water", "footprint": {"type": "uniform", "value": 0.3}},
         "prob_water, no whitecaps": {"type": "prob_water", "whitecaps": False},
         "prob_water, no shadowing": {"type": "prob_water", "shadowing": False},
