@@ -34,6 +34,8 @@
 //! | [`scenario`] | 28: lasers, beams and observers |
 //! | [`ensemble`] | section 7: statistics over drawn surfaces |
 //! | [`exact`] | the same for infinitely many, without draws |
+//! | [`planes`] | 80-89: in the plane of incidence and across it |
+//! | [`empirical`] | 89-91: the report's empirical model, for one angle of incidence |
 //! | [`EnsembleLobe`] | the BRDF of a wavy sea seen from afar |
 //! | [`InstanceLobe`] | that of one drawn sea, place by place |
 //! | [`FacetTable`] | facets where the footprint changes from place to place |
@@ -48,16 +50,19 @@ pub mod brdf;
 mod c_api;
 pub mod cast;
 mod characteristic;
+pub mod empirical;
 pub mod ensemble;
 pub mod ensemble_lobe;
 mod error;
 pub mod exact;
 mod facet_table;
+mod gaussian_fit;
 pub mod grid;
 mod instance_lobe;
 pub mod mesh;
 pub mod optics;
 mod parameters;
+pub mod planes;
 mod quadrature;
 pub mod real;
 pub mod sampling;
