@@ -39,8 +39,8 @@ class Chart:
 
 
 BEAUFORT = [
-    ("calm", "No wind: the spectrum has no waves, and the facets' slopes are what Cox and Munk's law leaves at no wind. One "
-     "soft image of the sun."),
+    ("calm", "Hardly any wind (w* = 2 cm/s): ripples too low to show, and one soft image of the sun, as wide as Cox and "
+     "Munk's law leaves the slopes."),
     ("light air", "Ripples without crests. The path is narrow, and breaks into glints near the camera, where single waves are "
      "seen."),
     ("light breeze", "The path reaches from the horizon to the camera and is wider. Short waves tell near from far."),
