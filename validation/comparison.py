@@ -10,7 +10,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from review_set import Comparison
-from tone import REC709, to_bytes
+from tone import REC709
 
 #: The difference that is shown in full colour: red where the first picture is brighter, blue where the second is.
 FULL = 0.2
@@ -21,7 +21,8 @@ def compare(comparison: Comparison, out: Path, replacing: Callable[[Path], Abstr
     exrs = [out / f"{name}.exr" for name in (comparison.first, comparison.second)]
     if not all(exr.is_file() for exr in exrs):
         return
-    first, second = (gaussian_filter(luminance(exr), comparison.blur * luminance(exr).shape[1]) for exr in exrs)
+    lights = [luminance(exr) for exr in exrs]
+    first, second = (gaussian_filter(light, comparison.blur * light.shape[1]) for light in lights)
     mean = 0.5 * (first + second)
     # Where there is light to compare.
     counts = mean > 0.02 * mean.max()

@@ -142,7 +142,8 @@ COMPARISONS = [
         first="from_above",
         second="from_above_ensemble",
         title="Waves as geometry, less their ensemble",
-        caption="Smoothed, so that single waves do not count. What is left are the long waves of this one sea.",
+        caption="Smoothed, so that single waves do not count. What is left are the long waves of this one sea. The left is even: "
+        "too little light to compare.",
         blur=0.05,
     ),
     Comparison(

@@ -203,6 +203,20 @@ def test_pixel_footprint(use, variant, integrator, pixel):
 
 
 @pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb"])
+def test_nothing_from_below_the_horizon(use, variant):
+    """Where the source is below the level surface there is neither value nor density, however the wave leans."""
+    from float32_errors import evaluate
+
+    mi, rng = use(variant), np.random.default_rng(5)
+    i = direction(rng.uniform(90.5, 105, 300), rng.uniform(0, 360, 300)).astype(np.float32)
+    o = direction(rng.uniform(0, 60, 300), rng.uniform(0, 360, 300)).astype(np.float32)
+    bsdf = mi.load_dict({"type": "prob_water", "surface": "instance", "friction_velocity": 120.0})
+    for a, b in ((i, o), (o, i)):
+        value, pdf = evaluate(mi, bsdf, a, b)
+        assert (value == 0).all() and (pdf == 0).all()
+
+
+@pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb"])
 def test_light_from_below(use, variant):
     """Diffuse, reciprocal, and the albedo of all stays below 1 for any reflectance."""
     mi, rng = use(variant), np.random.default_rng(6)

@@ -351,6 +351,11 @@ private:
     struct ScalarPlace {
         ProbWaterSpot spot;
     };
+    /// The light from below: the water's reflectance, and the share of draws that go to it, by what each reflects, roughly.
+    struct Below {
+        UnpolarizedSpectrum reflectance;
+        Float share;
+    };
     using Here = std::conditional_t<dr::is_jit_v<Float>, TracedPlace, ScalarPlace>;
 
     static Spectrum spectrum(const UnpolarizedSpectrum &value) { return depolarizer<Spectrum>(value); }
@@ -394,17 +399,18 @@ private:
 
     /// How the footprint changes from place to place; empty where it does not.
     std::string varied() const { return m_pixel ? "pixel" : m_footprint ? "a texture" : ""; }
+    bool varies() const { return m_pixel || m_footprint; }
 
     void configure() {
         m_water.emplace(refuse([&] { return m_options->configure(varied()); }));
         bool drawn = water().kind() == prob_water::Kind::Instance;
         m_exposed.clear();
         for (const std::string name : Exposed)
-            if (!std::isnan(water().number(name)) && (name != "footprint" || varied().empty()) &&
+            if (!std::isnan(water().number(name)) && (name != "footprint" || !varies()) &&
                 (name != "time" || drawn) && (!m_lent || name == "wavelength" || name == "ior"))
                 m_exposed.emplace_back(name, 0.f);
         apply();
-        if (m_whitecap_texture && m_afar_only)
+        if (m_whitecap_texture && water().kind() == prob_water::Kind::Ensemble)
             Throw("prob_water: whitecaps = a texture is out of range: allowed is true or false with surface = ensemble");
     }
 
@@ -417,10 +423,8 @@ private:
         prob_water::Coefficients c = water.coefficients();
         m_lobe = Lobe(c);
         m_own_footprint = (ScalarFloat) water.number("footprint");
-        prob_water::Kind kind = water.kind();
-        m_afar_only = kind == prob_water::Kind::Ensemble;
-        m_drawn_waves = kind == prob_water::Kind::Instance;
-        m_places = m_drawn_waves || m_whitecap_texture || !varied().empty();
+        m_drawn_waves = water.kind() == prob_water::Kind::Instance;
+        m_places = m_drawn_waves || m_whitecap_texture || varies();
         if constexpr (dr::is_jit_v<Float>) {
             m_afar = Afar(water.waves());
             m_facets = FacetTable(water.facet_rows());
@@ -471,20 +475,19 @@ private:
 
     Here here(const SurfaceInteraction3f &si, Mask active) const {
         Here at;
+        auto along = [&](const Vector3f &v) {
+            return dr::fmadd(Wide(v.x()), Wide(si.p.x()),
+                             dr::fmadd(Wide(v.y()), Wide(si.p.y()), Wide(v.z()) * Wide(si.p.z())));
+        };
         if constexpr (dr::is_jit_v<Float>) {
             at.lobe = m_lobe;
-            bool varies = !varied().empty();
             Float d;
-            if (varies) {
+            if (varies()) {
                 d = footprint(si, active);
                 m_facets.set(at.lobe, d);
             }
             if (m_drawn_waves) {
-                auto along = [&](const Vector3f &v) {
-                    return dr::fmadd(Wide(v.x()), Wide(si.p.x()),
-                                     dr::fmadd(Wide(v.y()), Wide(si.p.y()), Wide(v.z()) * Wide(si.p.z())));
-                };
-                auto [n, whitecap] = m_drawn.at(along(si.sh_frame.s), along(si.sh_frame.t), varies ? &d : nullptr);
+                auto [n, whitecap] = m_drawn.at(along(si.sh_frame.s), along(si.sh_frame.t), varies() ? &d : nullptr);
                 at.frame = at.lobe.frame(n);
                 if (m_whitecaps)
                     at.lobe.whitecap_fraction = whitecap;
@@ -495,13 +498,10 @@ private:
             constexpr float None = std::numeric_limits<float>::quiet_NaN();
             ProbWaterPlace place{ { 0., 0. }, None, None };
             if (m_drawn_waves) {
-                auto along = [&](const Vector3f &v) {
-                    return (double) v.x() * si.p.x() + (double) v.y() * si.p.y() + (double) v.z() * si.p.z();
-                };
                 place.place[0] = along(si.sh_frame.s);
                 place.place[1] = along(si.sh_frame.t);
             }
-            if (!varied().empty())
+            if (varies())
                 place.footprint = footprint(si, active);
             if (m_whitecap_texture)
                 place.whitecaps = within_one(m_whitecap_texture->eval_1(si, active));
@@ -552,27 +552,31 @@ private:
     template <bool Value, bool Pdf>
     std::pair<Spectrum, Float> eval_pdf(Enabled on, const Here &at, const SurfaceInteraction3f &si, const Vector3f &wo,
                                         Mask active) const {
+        if (on.below)
+            return eval_pdf<Value, Pdf>(on, at, si, wo, below(on, at, si, active), active);
         auto [value, pdf] = surface<Value, Pdf>(at, si.wi, wo, on.parts);
-        if (!on.below)
-            return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
-        UnpolarizedSpectrum below = within_one(m_water_leaving->eval(si, active));
+        return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
+    }
+
+    template <bool Value, bool Pdf>
+    std::pair<Spectrum, Float> eval_pdf(Enabled on, const Here &at, const SurfaceInteraction3f &si, const Vector3f &wo,
+                                        const Below &below, Mask active) const {
+        auto [value, pdf] = surface<Value, Pdf>(at, si.wi, wo, on.parts);
         if (Pdf)
-            pdf = dr::lerp(pdf, cosine_pdf(si.wi, wo), below_share(on, at, si.wi, below));
-        return { spectrum(value + from_below(at, si.wi, wo, below)) & active, dr::select(active, pdf, 0.f) };
+            pdf = dr::lerp(pdf, cosine_pdf(si.wi, wo), below.share);
+        return { spectrum(value + from_below(at, si.wi, wo, below.reflectance)) & active, dr::select(active, pdf, 0.f) };
     }
 
     std::pair<BSDFSample3f, Spectrum> sample(Enabled on, const Here &at, const SurfaceInteraction3f &si, Float sample1,
                                              const Point2f &sample2, Mask active) const {
         BSDFSample3f bs = dr::zeros<BSDFSample3f>();
-        UnpolarizedSpectrum below = 0.f;
-        Float share = 0.f;
+        Below below;
         Mask diffuse = false;
         if (on.below) {
-            below = within_one(m_water_leaving->eval(si, active));
-            share = below_share(on, at, si.wi, below);
-            diffuse = sample1 < share;
-            sample1 = dr::select(diffuse, 0.f, dr::minimum((sample1 - share) * dr::rcp(dr::maximum(1.f - share, Lobe::Small)),
-                                                           dr::OneMinusEpsilon<Float>));
+            below = this->below(on, at, si, active);
+            diffuse = sample1 < below.share;
+            Float rest = (sample1 - below.share) * dr::rcp(dr::maximum(1.f - below.share, Lobe::Small));
+            sample1 = dr::select(diffuse, 0.f, dr::minimum(rest, dr::OneMinusEpsilon<Float>));
         }
 
         Float value = 0.f;
@@ -580,7 +584,7 @@ private:
         if (!on.parts.none()) {
             if constexpr (dr::is_jit_v<Float>) {
                 std::tie(bs.wo, whitecap) = at.lobe.sample(si.wi, sample1, sample2, on.parts, at.frame);
-            } else {
+            } else if (!diffuse) {
                 float u[3] = { sample1, sample2.x(), sample2.y() };
                 ProbWaterSample s{};
                 if (m_places)
@@ -596,7 +600,7 @@ private:
         if (on.below) {
             Vector3f wo = warp::square_to_cosine_hemisphere(sample2);
             bs.wo = dr::select(diffuse, wo, bs.wo);
-            auto [total, pdf] = eval_pdf<true, true>(on, at, si, bs.wo, active);
+            auto [total, pdf] = eval_pdf<true, true>(on, at, si, bs.wo, below, active);
             bs.pdf = pdf;
             active &= bs.pdf > 0.f;
             return finish(bs, total / bs.pdf, diffuse || whitecap, active);
@@ -631,15 +635,16 @@ private:
         return dr::select(wi.z() > 0.f, dr::maximum(wo.z(), 0.f) * dr::InvPi<Float>, 0.f);
     }
 
-    /// The share of draws that go to the light from below: by what each reflects, roughly.
-    Float below_share(Enabled on, const Here &at, const Vector3f &wi, const UnpolarizedSpectrum &reflectance) const {
+    /// The light from below at a place.
+    Below below(Enabled on, const Here &at, const SurfaceInteraction3f &si, Mask active) const {
+        UnpolarizedSpectrum reflectance = within_one(m_water_leaving->eval(si, active));
         if (on.parts.none())
-            return 1.f;
-        Float rho = m_lobe.reflectance(dr::clip(wi.z(), 0.f, 1.f)), foam = whitecap_share(at),
+            return { reflectance, 1.f };
+        Float rho = m_lobe.reflectance(dr::clip(si.wi.z(), 0.f, 1.f)), foam = whitecap_share(at),
               below = dr::mean(reflectance) * (1.f - rho) * (1.f - foam),
               rest = (on.parts.facets ? (1.f - foam) * (rho + Lobe::FacetAlbedoFloor) : Float(0.f)) +
                      (on.parts.whitecaps ? foam * m_lobe.whitecap_brdf * dr::Pi<Float> : Float(0.f));
-        return below / dr::maximum(below + rest, Lobe::Small);
+        return { reflectance, below / dr::maximum(below + rest, Lobe::Small) };
     }
 
     rust::Box<prob_water::Options> m_options;
@@ -648,7 +653,7 @@ private:
     std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
     ref<Texture> m_footprint, m_whitecap_texture, m_water_leaving;
     ScalarFloat m_own_footprint = 0.f, m_pixel_angle = 0.f;
-    bool m_pixel = false, m_whitecaps = false, m_afar_only = false, m_drawn_waves = false, m_places = false, m_lent = false;
+    bool m_pixel = false, m_whitecaps = false, m_drawn_waves = false, m_places = false, m_lent = false;
     Lobe m_lobe;
     Afar m_afar;
     FacetTable m_facets;

@@ -107,7 +107,7 @@ pub extern "C" fn prob_water_spot_eval(spot: &Spot, bits: u32, i: &[f32; 3], o: 
 /// As [`prob_water_bsdf_pdf`].
 #[unsafe(no_mangle)]
 pub extern "C" fn prob_water_spot_pdf(spot: &Spot, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
-    if o[2] > 0.0 { spot.lobe.pdf_parts(*i, *o, spot.n, parts(bits)) } else { 0.0 }
+    if i[2] > 0.0 && o[2] > 0.0 { spot.lobe.pdf_parts(*i, *o, spot.n, parts(bits)) } else { 0.0 }
 }
 
 /// As [`prob_water_bsdf_sample`].

@@ -248,7 +248,7 @@ impl Water {
             return ffi::FacetRows { first: 0.0, step: 1.0, scale: 0.0, bounded: false, cells: vec![] };
         };
         let ([first, step], scale, cells) = table.table();
-        ffi::FacetRows { first, step, scale, bounded: table.bounded(), cells }
+        ffi::FacetRows { first, step, scale, bounded: table.bounded, cells }
     }
 
     fn drawn_waves(&self) -> ffi::DrawnWaves {

@@ -1,6 +1,6 @@
 //! What the shim of the shape calls: a sea's mesh over a cxx bridge.
 
-use prob_water::vocabulary::{Builder, ENTRIES, Value};
+use prob_water::vocabulary::{Builder, ENTRIES, Value, whole};
 use prob_water::{Error, Layout, Mesh, Surface};
 
 #[cxx::bridge(namespace = "prob_water")]
@@ -65,13 +65,6 @@ fn mesh_vocabulary() -> Vec<String> {
     ENTRIES.iter().map(|e| e.name).chain(LAYOUT).map(String::from).collect()
 }
 
-fn whole(parameter: &'static str, value: f64) -> Result<u64, Error> {
-    if value.fract() == 0.0 && (1.0..1e15).contains(&value) {
-        return Ok(value as u64);
-    }
-    Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: "a whole number from 1".into() })
-}
-
 impl MeshOptions {
     fn set(&mut self, name: &str, value: Value) -> Result<(), String> {
         let l = &mut self.layout;
@@ -82,10 +75,10 @@ impl MeshOptions {
             ("radius", Value::Number(x)) => l.radius = *x,
             ("azimuth", Value::Number(x)) => l.azimuth = *x,
             ("opening", Value::Number(x)) => l.opening = *x,
-            ("vertices", Value::Number(x)) => {
-                l.vertices = whole("vertices", *x).map_err(|e| e.to_string())?
+            ("vertices", Value::Number(_)) => {
+                l.vertices = whole("vertices", &value).map_err(|e| e.to_string())?
             }
-            ("memory", Value::Number(x)) => l.memory = whole("memory", *x).map_err(|e| e.to_string())?,
+            ("memory", Value::Number(_)) => l.memory = whole("memory", &value).map_err(|e| e.to_string())?,
             _ if LAYOUT.contains(&name) => return Err(format!("{name} = {value} is not a number")),
             _ => return self.sea.set(name, &value).map_err(|e| e.to_string()),
         }

@@ -33,6 +33,11 @@ pub(crate) struct Component {
     bounds: [f64; 3],
 }
 
+/// Variances of a drawn sea: slope upwind, crosswind, acceleration in m^2/s^4.
+pub(crate) fn variances(waves: &Waves) -> [f64; 3] {
+    Component::new(waves).map_or([0.0; 3], |component| component.variances(waves.components as f64))
+}
+
 impl Component {
     /// `None` where there are no waves.
     pub fn new(waves: &Waves) -> Option<Self> {

@@ -5,6 +5,7 @@
 //! Facets and whitecaps are kept apart and without the reflectance rho and the whitecaps' f_WC, which are all that depends
 //! on the wavelength: directions fix rho. So the same numbers serve every wavelength and index.
 
+use crate::characteristic::variances;
 use crate::gaussian_fit::Gaussian;
 use crate::planes::{Planes, width};
 use crate::{Engagement, Ensemble, Error, Presence, Water};
@@ -65,7 +66,8 @@ impl Node {
         let source = [-incidence.sin(), 0.0, incidence.cos()];
         let planes = Planes::new(source, water.parameters.wind_direction.to_radians());
         // So far across as the lobe is wide, from the slopes' standard deviation across; refined once by its own fit.
-        let slopes = water.variances.iter().sum::<f64>() + drawn_slopes(water);
+        let [upwind, crosswind, _] = variances(&water.waves());
+        let slopes = water.variances.iter().sum::<f64>() + upwind + crosswind;
         let mut reach = (REACH * 2.0 * slopes.sqrt() * incidence.cos().max(0.05)).min(0.95 * FRAC_PI_2);
         let mut node = Self::looked_at(water, &planes, thetas, reach)?;
         let wanted = REACH * width(node.sigma, incidence, incidence);
@@ -87,7 +89,6 @@ impl Node {
         let sigma = width(self.sigma, self.planes.incidence, theta);
         let off = phi - self.delta;
         let fall = if sigma > 0.0 { (-(off / sigma).powi(2)).exp() } else { 0.0 };
-        let facets = Moments { whitecaps: 0.0, ..moments }.brdf(rho, 0.0);
         let [mean, std] =
             Moments { facets: fall * moments.facets, facets2: fall * fall * moments.facets2, ..moments }
                 .brdf(rho, whitecap);
@@ -95,7 +96,7 @@ impl Node {
         let across = if sigma > 0.0 {
             let wider = 2.0 * (off / sigma).powi(2) * self.u_sigma / self.sigma;
             let aside = 2.0 * off * self.u_delta / (sigma * sigma);
-            fall * facets[0] * wider.hypot(aside)
+            fall * rho * moments.facets * wider.hypot(aside)
         } else {
             0.0
         };
@@ -198,18 +199,4 @@ impl Node {
 fn reflectance(water: &Water, i: [f64; 3], o: [f64; 3]) -> f64 {
     let half = 0.5 * (0..3).map(|k| (i[k] + o[k]).powi(2)).sum::<f64>().sqrt();
     water.lobe.facets.reflectance.eval(half.min(1.0))
-}
-
-/// Variance of the drawn waves' slopes, both axes together.
-fn drawn_slopes(water: &Water) -> f64 {
-    let waves = water.waves();
-    let Some([low, high]) = waves.log_range else { return 0.0 };
-    const STEPS: i32 = 200;
-    let step = (high - low) / f64::from(STEPS);
-    (0..STEPS)
-        .map(|i| {
-            let k = (low + (f64::from(i) + 0.5) * step).exp();
-            waves.spectrum.density(k) * k.powi(3) * step
-        })
-        .sum()
 }

@@ -83,6 +83,15 @@ pub enum Error {
     },
 }
 
+/// Refuses a parameter's value.
+pub(crate) fn refuse<T>(
+    parameter: &'static str,
+    value: impl ToString,
+    allowed: impl Into<String>,
+) -> Result<T, Error> {
+    Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: allowed.into() })
+}
+
 impl Error {
     /// The parameters that are to blame, the last given first.
     pub fn parameters(&self) -> Vec<&'static str> {

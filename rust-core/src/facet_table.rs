@@ -16,6 +16,8 @@ const NODES: usize = 769;
 pub struct FacetTable {
     /// Eq. 56's constant with the 2 pi of the density.
     scale: f64,
+    /// Whether the bound on what facets reflect is in force at any footprint.
+    pub bounded: bool,
     rows: Vec<Row>,
 }
 
@@ -35,9 +37,11 @@ impl FacetTable {
             let bound = if f.bounded { f.bound } else { BOUND_SLACK };
             [f.sigma_u, f.sigma_c, f.steep_gain, bound, f.proposal_u, f.proposal_c, 0.0, 0.0]
         };
+        let rows: Vec<Row> = (0..NODES).into_par_iter().map(row).collect();
         Self {
             scale: facets.scale * facets.sigma_u * facets.sigma_c,
-            rows: (0..NODES).into_par_iter().map(row).collect(),
+            bounded: rows.iter().any(|row| row[3] < BOUND_SLACK),
+            rows,
         }
     }
 
@@ -60,14 +64,9 @@ impl FacetTable {
         facets.steep_gain = T::of(gain);
         facets.steep_cos = T::of(gain.powf(-0.25));
         facets.bound = T::of(bound);
-        facets.bounded = self.bounded();
+        facets.bounded = self.bounded;
         facets.proposal_u = T::of(u);
         facets.proposal_c = T::of(c);
-    }
-
-    /// Whether the bound on what facets reflect is in force at any footprint.
-    pub fn bounded(&self) -> bool {
-        self.rows.iter().any(|row| row[3] < BOUND_SLACK)
     }
 
     /// For traced code, linear between rows: the first row's logarithm and the step, the constant over

@@ -47,7 +47,10 @@ impl Gaussian {
                     DMat3::from_cols(gradient * gradient.x, gradient * gradient.y, gradient * gradient.z);
                 slope += gradient * (y - value);
             }
-            let damped = square + damping * DMat3::from_diagonal(square.diagonal_vector());
+            let mut damped = square;
+            damped.x_axis.x *= 1.0 + damping;
+            damped.y_axis.y *= 1.0 + damping;
+            damped.z_axis.z *= 1.0 + damping;
             let step = damped.inverse() * slope;
             let next = Self {
                 height: best.height * (1.0 + step.x),
@@ -70,16 +73,6 @@ impl Gaussian {
         }
         let within = (places[0]..=*places.last()?).contains(&best.center) && best.width < 4.0 * range;
         (within && best.height > 0.0).then_some(best)
-    }
-}
-
-trait Diagonal {
-    fn diagonal_vector(&self) -> DVec3;
-}
-
-impl Diagonal for DMat3 {
-    fn diagonal_vector(&self) -> DVec3 {
-        DVec3::new(self.x_axis.x, self.y_axis.y, self.z_axis.z)
     }
 }
 

@@ -2,6 +2,7 @@
 //! before the counts are known and within the budgets.
 
 use crate::Error;
+use crate::error::refuse;
 use crate::wind::bisect;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -134,10 +135,6 @@ pub struct Grid {
     pub vertices: u64,
     /// Number of triangles.
     pub faces: u64,
-}
-
-fn refuse<T>(parameter: &'static str, value: impl ToString, allowed: impl Into<String>) -> Result<T, Error> {
-    Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: allowed.into() })
 }
 
 impl Grid {

@@ -2,8 +2,9 @@
 //! than two footprints are geometry ([`share`](crate::surface::share)), the shorter ones facets, and where crests break
 //! is what the drawn waves say of Eqs. 53-54.
 
+use crate::characteristic::variances;
 use crate::grid::{CELLS, Grid, Layout, Ring, needed, split};
-use crate::waves::{Component, Draws, Waves};
+use crate::waves::{Component, Draws};
 use crate::wind::bisect;
 use crate::{Ensemble, Error, Parameters, RealisedSurface, Water, slopes, whitecap};
 use rayon::prelude::*;
@@ -60,32 +61,27 @@ pub struct Vertices {
 
 impl Foam {
     fn new(water: &Water, fraction: f64, components: &[Component]) -> Self {
-        let variance = |components: &[Component]| -> f64 {
-            components.iter().map(Component::acceleration_variance).sum()
-        };
         let deviation = whitecap::deviation(water.wind.friction_velocity, fraction).map(|s| 0.01 * s);
         let wanted = deviation.unwrap_or_default().powi(2);
         let breaking = Water { parameters: Parameters { footprint: BREAKING, ..water.parameters }, ..*water };
-        let theirs = variance(&stratified(&breaking, breaking.waves()));
+        let [_, _, theirs] = variances(&breaking.waves());
         let gain = if theirs > 0.0 { (wanted / theirs).sqrt().max(1.0) } else { 1.0 };
-        let waves = (0..components.len())
-            .take_while(|n| gain * gain * variance(&components[..=*n]) <= wanted)
-            .count();
+        let mut sum = 0.0;
+        let fits = |c: &&Component| {
+            sum += gain * gain * c.acceleration_variance();
+            sum <= wanted
+        };
+        let waves = components.iter().take_while(fits).count();
         Self { deviation, gain, waves }
     }
-}
-
-/// The waves of one instance whose draws are stratified, in order of rising wave numbers.
-fn stratified(water: &Water, waves: Waves) -> Vec<Component> {
-    let sea = Ensemble { draws: Draws::Stratified, waves, ..Ensemble::new(water) };
-    sea.components(0).1.collect()
 }
 
 impl Mesh {
     /// A sea within the layout's budgets: one instance, its draws stratified.
     pub fn new(water: &Water, layout: &Layout) -> Result<Self, Error> {
         let grid = Grid::new(layout, water.parameters.footprint)?;
-        let components = stratified(water, water.fading_waves());
+        let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(water) };
+        let components: Vec<_> = sea.components(0).1.collect();
         let fraction = if water.parameters.whitecaps { water.whitecap_fraction } else { 0.0 };
         let foam = (fraction > 0.0).then(|| Foam::new(water, fraction, &components));
         Ok(Self { water: *water, grid, components, foam })

@@ -1,4 +1,5 @@
 use crate::brdf::{Facets, Lobe, steep_facets};
+use crate::error::refuse;
 use crate::optics::{self, Fresnel, Reflectance};
 use crate::spectrum::Spectrum;
 use crate::waves::Waves;
@@ -144,10 +145,7 @@ pub const MOST_COMPONENTS: u32 = 65_536;
 pub const MOST_INSTANCES: u64 = 1_000_000_000;
 
 fn require(parameter: &'static str, value: impl ToString, holds: bool, allowed: &str) -> Result<(), Error> {
-    if holds {
-        return Ok(());
-    }
-    Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: allowed.into() })
+    if holds { Ok(()) } else { refuse(parameter, value, allowed) }
 }
 
 impl Water {

@@ -1,6 +1,7 @@
 //! Engagements: a laser, its beam and the observers at one time (Eqs. 28, 57-58).
 
 use crate::Error;
+use crate::error::refuse;
 use glam::DVec3;
 
 /// The flattest beam, as the sine of its angle below the horizontal: 0.001 degrees. A flatter one might travel
@@ -116,10 +117,6 @@ fn shown(position: [f64; 3]) -> String {
         if long { format!("{x:e}") } else { x.to_string() }
     });
     format!("[{x}, {y}, {z}]")
-}
-
-fn refuse<T>(parameter: &'static str, value: impl ToString, allowed: &str) -> Result<T, Error> {
-    Err(Error::OutOfRange { parameter, value: value.to_string(), allowed: allowed.into() })
 }
 
 #[cfg(test)]

@@ -108,8 +108,8 @@ fn number(parameter: &'static str, value: &Value) -> Result<f64, Error> {
     }
 }
 
-/// A whole number within what `T` holds.
-fn whole<T: TryFrom<u64>>(parameter: &'static str, value: &Value) -> Result<T, Error> {
+/// A whole number within what `T` holds, of a parameter by its name.
+pub fn whole<T: TryFrom<u64>>(parameter: &'static str, value: &Value) -> Result<T, Error> {
     let x = number(parameter, value)?;
     // Beyond 2^53 not every whole number is one of float64.
     let whole = (x.fract() == 0.0 && (0.0..9_007_199_254_740_992.0).contains(&x)).then_some(x as u64);
