@@ -11,7 +11,8 @@ use crate::batch::{Rows, check_units};
 use crate::brdf::up;
 use crate::real::Vec3;
 use crate::vocabulary::{Builder, Value};
-use crate::{Error, Lobe, Real, Surface, Water};
+use crate::{EmpiricalLobe, Error, Lobe, Real, Surface, Table, Water};
+use std::path::PathBuf;
 
 /// What a call came to. Anything but OK leaves outputs untouched and a message in
 /// `prob_water_last_error`.
@@ -20,7 +21,7 @@ use crate::{Error, Lobe, Real, Surface, Water};
 pub enum ProbWaterStatus {
     /// Done.
     Ok = 0,
-    /// A parameter is unknown, of the wrong type, out of range, or excluded by another one.
+    /// A parameter is unknown, of the wrong type, out of range, or excluded by another one; or a table is not to be used.
     Parameter = 1,
     /// A row's direction is not a finite unit vector, a normal does not point up, or a uniform number
     /// is outside [0, 1).
@@ -34,12 +35,16 @@ pub enum ProbWaterStatus {
 /// Parameters being collected.
 pub struct ProbWaterOptions {
     builder: Builder,
+    table: Option<PathBuf>,
 }
 
 /// A configured sea.
 pub struct ProbWater {
     water: Water,
+    /// What draws directions; the BRDF itself on a flat surface.
+    lobe: Lobe<f64>,
     single: Lobe<f32>,
+    empirical: Option<EmpiricalLobe>,
 }
 
 /// What the wind and the parameters come to.
@@ -147,10 +152,11 @@ pub extern "C" fn prob_water_last_error() -> *const c_char {
 /// New options, all at their defaults. Free with `prob_water_options_free`.
 #[unsafe(no_mangle)]
 pub extern "C" fn prob_water_options_new() -> *mut ProbWaterOptions {
-    Box::into_raw(Box::new(ProbWaterOptions { builder: Builder::default() }))
+    Box::into_raw(Box::new(ProbWaterOptions { builder: Builder::default(), table: None }))
 }
 
-/// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact".
+/// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact". Beside the vocabulary's there is
+/// "table", the path of a table of the empirical model for surface "empirical", instead of the library's own.
 ///
 /// # Safety
 /// `options` comes from `prob_water_options_new`; `name` and `value` are C strings.
@@ -165,6 +171,10 @@ pub unsafe extern "C" fn prob_water_options_set(
         let options = unsafe { options.as_mut() }.ok_or_else(|| null("options"))?;
         // SAFETY: by this function's contract.
         let (name, value) = unsafe { (utf8(name, "name")?, utf8(value, "value")?) };
+        if name == "table" {
+            options.table = Some(value.into());
+            return Ok(());
+        }
         options.builder.set(name, &Value::Text(value.into())).map_err(refused)
     })
 }
@@ -216,8 +226,22 @@ pub unsafe extern "C" fn prob_water_configure(
         // SAFETY: by this function's contract.
         let sea = unsafe { sea.as_mut() }.ok_or_else(|| null("sea"))?;
         let configured = options.builder.parameters().and_then(|p| p.configure());
-        let water = configured.and_then(|water| water.on(&[Surface::Flat])).map_err(refused)?;
-        *sea = Box::into_raw(Box::new(ProbWater { water, single: water.lobe.cast() }));
+        let surfaces = [Surface::Flat, Surface::Empirical];
+        let water = configured.and_then(|water| water.on(&surfaces)).map_err(refused)?;
+        let empirical = match (water.parameters.surface, &options.table) {
+            (Surface::Empirical, None) => Some(EmpiricalLobe::new(&water, Table::standard())),
+            (Surface::Empirical, Some(path)) => {
+                Some(Table::open(path).and_then(|table| EmpiricalLobe::new(&water, &table)))
+            }
+            (_, Some(path)) => {
+                let reason = "has no meaning but with surface = empirical".into();
+                return Err(refused(Error::Table { name: path.display().to_string(), reason }));
+            }
+            _ => None,
+        };
+        let empirical = empirical.transpose().map_err(refused)?;
+        let lobe = empirical.as_ref().map_or(water.lobe, |empirical| empirical.sampler);
+        *sea = Box::into_raw(Box::new(ProbWater { water, lobe, single: lobe.cast(), empirical }));
         Ok(())
     })
 }
@@ -269,6 +293,7 @@ enum Quantity {
 /// # Safety
 /// The pointers are null or hold `rows` triples, `out` `rows` numbers.
 unsafe fn batch<T: Real>(
+    sea: &ProbWater,
     lobe: &Lobe<T>,
     quantity: Quantity,
     rows: usize,
@@ -286,9 +311,14 @@ unsafe fn batch<T: Real>(
     // SAFETY: by this function's contract.
     let n = if normals.is_null() { None } else { Some(unsafe { triples(normals, rows, "normals")? }) };
     let checked = Rows::new(i, o, n).map_err(refused)?;
-    match quantity {
-        Quantity::Brdf => checked.eval(lobe, out),
-        Quantity::Pdf => checked.pdf(lobe, out),
+    let table = sea.empirical.as_ref();
+    if table.is_some() && n.is_some() {
+        return Err((ProbWaterStatus::Argument, "normals have no meaning with surface = empirical".into()));
+    }
+    match (quantity, table) {
+        (Quantity::Brdf, Some(table)) => checked.each(out, |_, i, o, _| table.eval(i, o)),
+        (Quantity::Brdf, None) => checked.eval(lobe, out),
+        (Quantity::Pdf, _) => checked.pdf(lobe, out),
     }
     .map_err(refused)
 }
@@ -304,7 +334,7 @@ unsafe fn with_sea(
 }
 
 /// The BRDF f, 1/sr, of every row in float64: unit vectors to the source and to the observer, and
-/// wave normals, or null for a flat sea. A direction below the horizon gives 0.
+/// wave normals, or null for a flat sea, as an empirical one always is. A direction below the horizon gives 0.
 ///
 /// # Safety
 /// `sea` comes from `prob_water_configure`; the vectors hold `rows` triples, `f` `rows` numbers.
@@ -320,7 +350,7 @@ pub unsafe extern "C" fn prob_water_eval(
 ) -> ProbWaterStatus {
     // SAFETY: by this function's contract.
     unsafe {
-        with_sea(sea, |s| batch(&s.water.lobe, Quantity::Brdf, rows, [to_source, to_observer, normals], f))
+        with_sea(sea, |s| batch(s, &s.lobe, Quantity::Brdf, rows, [to_source, to_observer, normals], f))
     }
 }
 
@@ -338,7 +368,44 @@ pub unsafe extern "C" fn prob_water_eval_f32(
     f: *mut c_float,
 ) -> ProbWaterStatus {
     // SAFETY: by this function's contract.
-    unsafe { with_sea(sea, |s| batch(&s.single, Quantity::Brdf, rows, [to_source, to_observer, normals], f)) }
+    unsafe {
+        with_sea(sea, |s| batch(s, &s.single, Quantity::Brdf, rows, [to_source, to_observer, normals], f))
+    }
+}
+
+/// The mean of f, 1/sr, of every row by the empirical model, its standard uncertainty, and whether the directions lie
+/// outside of the table's grid (1), whose nearest values these are, or not (0).
+///
+/// # Safety
+/// As `prob_water_eval`; `outside` holds `rows` bytes. The sea's surface is "empirical".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn prob_water_estimate(
+    sea: *const ProbWater,
+    rows: usize,
+    to_source: *const c_double,
+    to_observer: *const c_double,
+    mean: *mut c_double,
+    std: *mut c_double,
+    outside: *mut u8,
+) -> ProbWaterStatus {
+    // SAFETY: by this function's contract.
+    unsafe {
+        with_sea(sea, |s| {
+            let Some(table) = &s.empirical else {
+                let message = "the surface of this sea is not empirical: nothing else has an estimate";
+                return Err((ProbWaterStatus::Argument, message.into()));
+            };
+            let (i, o) = (triples(to_source, rows, "to_source")?, triples(to_observer, rows, "to_observer")?);
+            let (mean, std) = (output(mean, rows, "mean")?, output(std, rows, "std")?);
+            let outside = output(outside, rows, "outside")?;
+            Rows::new(i, o, None).map_err(refused)?;
+            for row in 0..rows {
+                let estimate = table.estimate(i[row], o[row]);
+                (mean[row], std[row], outside[row]) = (estimate.mean, estimate.std, estimate.outside.into());
+            }
+            Ok(())
+        })
+    }
 }
 
 /// The density, 1/sr, with which `prob_water_sample` draws every row's observer for its source.
@@ -356,7 +423,7 @@ pub unsafe extern "C" fn prob_water_pdf(
 ) -> ProbWaterStatus {
     // SAFETY: by this function's contract.
     unsafe {
-        with_sea(sea, |s| batch(&s.water.lobe, Quantity::Pdf, rows, [to_source, to_observer, normals], pdf))
+        with_sea(sea, |s| batch(s, &s.lobe, Quantity::Pdf, rows, [to_source, to_observer, normals], pdf))
     }
 }
 
@@ -389,8 +456,12 @@ pub unsafe extern "C" fn prob_water_sample(
                 return Err((ProbWaterStatus::Row, message));
             }
             for row in 0..rows {
-                let sample = s.water.lobe.sample(i[row], up(), u[row]);
-                (o[row], pdf[row], f[row]) = (sample.direction, sample.pdf, sample.f);
+                let sample = s.lobe.sample(i[row], up(), u[row]);
+                let value = match &s.empirical {
+                    Some(table) if sample.pdf > 0.0 => table.eval(i[row], sample.direction),
+                    _ => sample.f,
+                };
+                (o[row], pdf[row], f[row]) = (sample.direction, sample.pdf, value);
             }
             Ok(())
         })

@@ -1,14 +1,28 @@
-//! The report's empirical model for one angle of incidence (section 9): the mean and the spread of the BRDF in the plane of
-//! incidence, and the width and the offset of the lobe across it, over drawn surfaces; and the BRDF of any direction
-//! from these few numbers (Eqs. 89-91).
+//! What the report's empirical model holds for one angle of incidence (section 9), from the full model: mean and spread of
+//! the BRDF in the plane of incidence, and the width and the offset of the lobe across it, over drawn surfaces.
 //!
 //! Facets and whitecaps are kept apart and without the reflectance rho and the whitecaps' f_WC, which are all that depends
 //! on the wavelength: directions fix rho. So the same numbers serve every wavelength and index.
+//!
+//! Means are those of [`Exact`] where waves hide next to nothing. Elsewhere they are multiplied by what is left visible,
+//! which is found on drawn surfaces: a beam meets the points of a surface that it can reach in proportion to the area
+//! they show it, so that, over points at random,
+//!
+//! `mean of f = E[A f V_i V_o]/cos theta_i`
+//!
+//! with the area A shown to the source per level area, and V whether a wave stands in the way (cast.rs). Its ratio to
+//! the same without V needs far fewer draws than the mean itself. Between, one passes into the other.
 
+use crate::cast::Path;
 use crate::characteristic::variances;
 use crate::gaussian_fit::Gaussian;
-use crate::planes::{Planes, width};
-use crate::{Engagement, Ensemble, Error, Presence, Water};
+use crate::planes::Planes;
+use crate::reference_lobe::Reference;
+use crate::surface::Surface;
+use crate::waves::{Draws, Numbers, Waves};
+use crate::{Engagement, Error, Exact, Water};
+use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// How far laser and observers are, m: the far field.
@@ -17,6 +31,14 @@ const OBSERVERS: f64 = 100e3;
 /// Nodes across the plane, to so many widths of the lobe at either side.
 const ACROSS: i32 = 24;
 const REACH: f64 = 3.0;
+/// By Smith's terms: up to the first nothing is hidden, from the second on drawn surfaces say how much.
+const HIDDEN: [f64; 2] = [1e-4, 1e-3];
+/// So many instances are enough for the spreads of width and offset.
+const FITS: u64 = 2048;
+/// Points drawn for one that the source reaches.
+const MOST: f64 = 8.0;
+/// Instances a thread takes at a time: sums are taken in this order, whatever the number of threads.
+const CHUNK: u64 = 256;
 
 /// Means over drawn surfaces at one direction; 0 where the observer cannot see the hit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -38,16 +60,21 @@ impl Moments {
     }
 }
 
+impl Moments {
+    /// Each times a factor, which counts as much as `weight`, from 0 to 1.
+    fn times(&self, factors: [f64; 3], weight: f64) -> Self {
+        let [a, b, c] = factors.map(|factor| 1.0 + weight * (factor - 1.0));
+        Self { facets: a * self.facets, facets2: b * self.facets2, whitecaps: c * self.whitecaps }
+    }
+}
+
 /// The numbers for an angle of incidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// Source, vertical and what follows from them.
-    pub planes: Planes,
-    /// Angles theta_r in the plane, rising, radians.
-    pub thetas: Vec<f64>,
-    /// At every one of them.
+    /// For every angle theta_r in the plane that was asked for.
     pub in_plane: Vec<Moments>,
-    /// sigma(0) of Eq. 89, radians: the 1/e half width of the mean lobe across the plane, over cos theta_i.
+    /// sigma(0) of Eq. 89, radians: the 1/e half width of the mean lobe across the plane, over cos theta_i; 0 where it
+    /// has no peak.
     pub sigma: f64,
     /// Its standard deviation over surfaces, each fitted by itself.
     pub u_sigma: f64,
@@ -59,144 +86,309 @@ pub struct Node {
     pub fitted: f64,
 }
 
-impl Node {
-    /// Draws the surfaces of a sea (its wind's azimuth counts from the plane of incidence, away from the source) under a
-    /// beam at an angle of incidence, and looks at them at the rising angles `thetas`; radians.
-    pub fn new(water: &Water, incidence: f64, thetas: &[f64]) -> Result<Self, Error> {
+/// The full model of a sea.
+#[derive(Debug, Clone)]
+pub struct Full {
+    /// Its parameters give the seed and the number of instances. Whitecaps reflect nothing: they are counted.
+    water: Water,
+    waves: Waves,
+    /// `None` where there are too few components for it.
+    exact: Option<Exact>,
+    reference: Reference,
+}
+
+impl Full {
+    /// Of a sea with drawn waves. Refused as by [`Exact::new`], but for few components.
+    pub fn new(water: &Water) -> Result<Self, Error> {
+        let mut water = *water;
+        water.lobe.whitecap_brdf = 0.0;
+        let exact = match Exact::new(&water) {
+            Err(Error::OutOfRange { parameter: "components", .. }) => None,
+            exact => {
+                let mut exact = exact?;
+                exact.obscuration = false;
+                Some(exact)
+            }
+        };
+        Ok(Self { water, waves: water.waves(), exact, reference: Reference::new(&water) })
+    }
+
+    /// The same sea under a wind from another azimuth, in degrees, counted from the plane of incidence, away from the
+    /// source.
+    pub fn turned(&self, degrees: f64) -> Self {
+        let water = self.water.turned(degrees);
+        Self {
+            water,
+            waves: water.waves(),
+            exact: self.exact.as_ref().map(|exact| exact.turned(degrees)),
+            reference: self.reference.turned(degrees),
+        }
+    }
+
+    /// The numbers for an angle of incidence, looked at from angles theta_r; radians. The source stands towards -x,
+    /// and the plane is that of x and z at normal incidence as well.
+    pub fn node(&self, incidence: f64, thetas: &[f64]) -> Result<Node, Error> {
         let source = [-incidence.sin(), 0.0, incidence.cos()];
-        let planes = Planes::new(source, water.parameters.wind_direction.to_radians());
+        let planes = Planes::new(source, 0.0);
         // So far across as the lobe is wide, from the slopes' standard deviation across; refined once by its own fit.
-        let [upwind, crosswind, _] = variances(&water.waves());
-        let slopes = water.variances.iter().sum::<f64>() + upwind + crosswind;
+        let [upwind, crosswind, _] = variances(&self.waves);
+        let slopes = self.water.variances.iter().sum::<f64>() + upwind + crosswind;
         let mut reach = (REACH * 2.0 * slopes.sqrt() * incidence.cos().max(0.05)).min(0.95 * FRAC_PI_2);
-        let mut node = Self::looked_at(water, &planes, thetas, reach)?;
-        let wanted = REACH * width(node.sigma, incidence, incidence);
-        if node.sigma > 0.0 && !(0.7..1.4).contains(&(wanted / reach)) {
-            reach = wanted.min(0.95 * FRAC_PI_2);
-            node = Self::looked_at(water, &planes, thetas, reach)?;
-        }
-        Ok(node)
-    }
-
-    /// Mean of f, 1/sr, and its standard uncertainty (Eqs. 90-91) towards a unit vector to the observer, for a reflectance
-    /// between it and the source and a whitecap's BRDF. Whitecaps reflect evenly: only facets fall off across the plane.
-    pub fn brdf(&self, to_observer: [f64; 3], rho: f64, whitecap: f64) -> [f64; 2] {
-        if to_observer[2] <= 0.0 {
-            return [0.0; 2];
-        }
-        let [theta, phi] = self.planes.angles(to_observer);
-        let moments = self.at(theta);
-        let sigma = width(self.sigma, self.planes.incidence, theta);
-        let off = phi - self.delta;
-        let fall = if sigma > 0.0 { (-(off / sigma).powi(2)).exp() } else { 0.0 };
-        let [mean, std] =
-            Moments { facets: fall * moments.facets, facets2: fall * fall * moments.facets2, ..moments }
-                .brdf(rho, whitecap);
-        // Of what facets reflect, by the spreads of the lobe's width and offset.
-        let across = if sigma > 0.0 {
-            let wider = 2.0 * (off / sigma).powi(2) * self.u_sigma / self.sigma;
-            let aside = 2.0 * off * self.u_delta / (sigma * sigma);
-            fall * rho * moments.facets * wider.hypot(aside)
-        } else {
-            0.0
-        };
-        [mean, std.hypot(across)]
-    }
-
-    /// The moments at an angle theta_r: between nodes on a straight line, nothing beyond them.
-    fn at(&self, theta: f64) -> Moments {
-        let Some(last) = self.thetas.len().checked_sub(1) else { return Moments::default() };
-        let above = self.thetas.partition_point(|t| *t <= theta);
-        if above == 0 || above > last {
-            let exact = above > last && theta == self.thetas[last];
-            return if exact { self.in_plane[last] } else { Moments::default() };
-        }
-        let [a, b] = [above - 1, above];
-        let t = (theta - self.thetas[a]) / (self.thetas[b] - self.thetas[a]);
-        let (low, high) = (&self.in_plane[a], &self.in_plane[b]);
-        let mix = |x: f64, y: f64| x + t * (y - x);
-        Moments {
-            facets: mix(low.facets, high.facets),
-            facets2: mix(low.facets2, high.facets2),
-            whitecaps: mix(low.whitecaps, high.whitecaps),
-        }
-    }
-
-    fn looked_at(water: &Water, planes: &Planes, thetas: &[f64], reach: f64) -> Result<Self, Error> {
-        let phis: Vec<f64> = (-ACROSS..=ACROSS).map(|i| reach * f64::from(i) / f64::from(ACROSS)).collect();
-        let directions: Vec<[f64; 3]> = thetas
-            .iter()
-            .map(|theta| planes.in_plane(*theta))
-            .chain(phis.iter().map(|phi| planes.across(*phi)))
-            .collect();
-        let above: Vec<[f64; 3]> = directions.iter().copied().filter(|d| d[2] > 0.0).collect();
-        let engagement = Engagement::far(planes.incidence.to_degrees(), LASER, &above, OBSERVERS)?;
-
-        // Facets alone, and how likely a whitecap is.
-        let mut facets = *water;
-        facets.lobe.whitecap_brdf = 0.0;
-        let sea = Ensemble { presence: Presence::Expected, ..Ensemble::new(&facets) }.around(&engagement);
-        let samples = sea.sample(std::slice::from_ref(&engagement), &|_| ())?;
-        let instances = samples.instances();
-        let source = [-planes.incidence.sin(), 0.0, planes.incidence.cos()];
-        let mut columns = vec![vec![[0.0; 2]; instances]; above.len()];
-        for (observer, column) in columns.iter_mut().enumerate() {
-            let rho = reflectance(water, source, above[observer]);
-            for ((_, hit, seen), cell) in samples.of(0, observer).zip(column) {
-                let open = 1.0 - hit.whitecap;
-                let value = if open > 0.0 && !seen.obscured { seen.f / (open * rho) } else { 0.0 };
-                *cell = [value, if seen.obscured { 0.0 } else { hit.whitecap }];
+        let mut across = self.across(&planes, reach)?;
+        if let Some(fit) = across.fit {
+            let wanted = REACH * fit.width;
+            if !(0.7..1.4).contains(&(wanted / reach)) {
+                reach = wanted.min(0.95 * FRAC_PI_2);
+                across = self.across(&planes, reach)?;
             }
         }
-        // For every direction its column; below the horizon there is none.
-        let mut left = columns.into_iter();
-        let columns: Vec<Option<Vec<[f64; 2]>>> =
-            directions.iter().map(|d| if d[2] > 0.0 { left.next() } else { None }).collect();
-        let n = instances as f64;
-        let moments = |column: &Option<Vec<[f64; 2]>>| {
-            let mut m = Moments::default();
-            for ([value, capped], (_, hit, _)) in column.iter().flatten().zip(samples.of(0, 0)) {
-                let open = 1.0 - hit.whitecap;
-                m.facets += open * value / n;
-                m.facets2 += open * value * value / n;
-                m.whitecaps += capped / n;
-            }
-            m
-        };
-        let (level, across) = columns.split_at(thetas.len());
-        let in_plane = level.iter().map(moments).collect();
-
-        let mean: Vec<f64> = across.iter().map(|c| moments(c).facets).collect();
-        let cos = planes.incidence.cos();
-        let mean = Gaussian::fit(&phis, &mean);
-        let mut fits = Vec::with_capacity(instances);
-        let mut curve = vec![0.0; phis.len()];
-        for i in 0..instances {
-            for (value, column) in curve.iter_mut().zip(across) {
-                *value = column.as_ref().map_or(0.0, |c| c[i][0]);
-            }
-            fits.extend(Gaussian::fit(&phis, &curve));
-        }
+        let fits = self.fits(&planes, &across.phis);
+        let cos = incidence.cos();
+        let total: f64 = fits.iter().map(|(weight, _)| weight).sum();
+        let fitted: Vec<(f64, Gaussian)> =
+            fits.iter().filter_map(|(w, fit)| fit.map(|fit| (*w, fit))).collect();
+        let known: f64 = fitted.iter().map(|(weight, _)| weight).sum();
         let spread = |f: &dyn Fn(&Gaussian) -> f64| {
-            let count = fits.len().max(1) as f64;
-            let average = fits.iter().map(f).sum::<f64>() / count;
-            (fits.iter().map(|g| (f(g) - average).powi(2)).sum::<f64>() / count).sqrt()
+            let average = fitted.iter().map(|(w, g)| w * f(g)).sum::<f64>() / known.max(f64::MIN_POSITIVE);
+            let square = fitted.iter().map(|(w, g)| w * (f(g) - average).powi(2)).sum::<f64>();
+            (square / known.max(f64::MIN_POSITIVE)).sqrt()
         };
-        Ok(Self {
-            planes: *planes,
-            thetas: thetas.into(),
-            in_plane,
-            sigma: mean.map_or(0.0, |g| g.width / cos),
+        let directions: Vec<_> = thetas.iter().map(|theta| planes.in_plane(*theta)).collect();
+        Ok(Node {
+            in_plane: self.moments(&planes, &directions)?,
+            sigma: across.fit.map_or(0.0, |g| g.width / cos),
             u_sigma: spread(&|g| g.width / cos),
-            delta: mean.map_or(0.0, |g| g.center),
+            delta: across.fit.map_or(0.0, |g| g.center),
             u_delta: spread(&|g| g.center),
-            fitted: fits.len() as f64 / n,
+            fitted: if total > 0.0 { known / total } else { 0.0 },
         })
+    }
+
+    /// The moments towards unit vectors, for a source in the plane x-z; nothing below the horizon.
+    pub fn moments(&self, planes: &Planes, directions: &[[f64; 3]]) -> Result<Vec<Moments>, Error> {
+        let source = planes.source();
+        let above: Vec<usize> = (0..directions.len()).filter(|k| directions[*k][2] > 0.0).collect();
+        let mut moments = vec![Moments::default(); directions.len()];
+        if above.is_empty() {
+            return Ok(moments);
+        }
+        let seen: Vec<[f64; 3]> = above.iter().map(|k| directions[*k]).collect();
+        let open = match &self.exact {
+            Some(exact) => {
+                let engagement = Engagement::far(planes.incidence.to_degrees(), LASER, &seen, OBSERVERS)?;
+                let means = exact.means(&engagement);
+                let all = means.iter().zip(&seen).map(|(m, o)| {
+                    let rho = self.reflectance(source, *o);
+                    Moments { facets: m.f / rho, facets2: m.f_squared / (rho * rho), whitecaps: m.whitecaps }
+                });
+                Some(all.collect::<Vec<_>>())
+            }
+            None => None,
+        };
+        // How much drawn surfaces matter: by the direction that sees least.
+        let [start, end] = HIDDEN.map(f64::ln);
+        let of_source = self.reference.hidden(source);
+        let weight = |o: [f64; 3]| {
+            let t = (of_source.max(self.reference.hidden(o)).max(1e-30).ln() - start) / (end - start);
+            let t = if open.is_some() { t.clamp(0.0, 1.0) } else { 1.0 };
+            t * t * (3.0 - 2.0 * t)
+        };
+        let weights: Vec<f64> = seen.iter().map(|o| weight(*o)).collect();
+        let hidden: Vec<usize> = (0..seen.len()).filter(|k| weights[*k] > 0.0).collect();
+        let ways: Vec<[f64; 3]> = hidden.iter().map(|k| seen[*k]).collect();
+        let instances = if hidden.is_empty() { 0 } else { self.instances(source) };
+        let sums = self.drawn(source, &ways, instances);
+        // The area that level water shows the source.
+        let level = instances as f64 * source[2];
+        for (k, sums) in hidden.iter().zip(sums) {
+            let at = &mut moments[above[*k]];
+            *at = match &open {
+                Some(open) => open[*k].times(sums.visible(level), weights[*k]),
+                None => sums.mean(level),
+            };
+        }
+        if let Some(open) = open {
+            for k in (0..seen.len()).filter(|k| weights[*k] == 0.0) {
+                moments[above[k]] = open[k];
+            }
+        }
+        Ok(moments)
+    }
+
+    /// How many points are drawn, so that the source reaches as many as there are instances; at most [`MOST`] times more.
+    fn instances(&self, source: [f64; 3]) -> u64 {
+        let some = self.water.parameters.instances.min(CHUNK);
+        let mut lit = 0;
+        for instance in 0..some {
+            self.point(instance, source, |point, _, _| lit += u64::from(point.lit));
+        }
+        let times = some as f64 / lit.max(1) as f64;
+        (self.water.parameters.instances as f64 * times.min(MOST)).ceil() as u64
+    }
+
+    /// Sums over points of drawn surfaces, for every direction.
+    fn drawn(&self, source: [f64; 3], ways: &[[f64; 3]], instances: u64) -> Vec<Sums> {
+        let empty = || vec![Sums::default(); ways.len()];
+        let chunks: Vec<Vec<Sums>> = (0..instances.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut sums = empty();
+                for instance in chunk * CHUNK..instances.min((chunk + 1) * CHUNK) {
+                    self.point(instance, source, |point, surface, path| {
+                        for (sums, way) in sums.iter_mut().zip(ways) {
+                            self.add(sums, point, source, *way, || {
+                                let observer = DVec3::from(*way) * OBSERVERS;
+                                !path.hides(surface, point.position, observer)
+                            });
+                        }
+                    });
+                }
+                sums
+            })
+            .collect();
+        let mut all = empty();
+        for sums in chunks {
+            all.iter_mut().zip(&sums).for_each(|(all, sums)| all.add(sums));
+        }
+        all
+    }
+
+    /// Shows a drawn surface's point at the origin, if it faces the source.
+    fn point(&self, instance: u64, source: [f64; 3], mut look: impl FnMut(&SeaPoint, &Surface, &mut Path)) {
+        let mut numbers = Numbers::new(Draws::Sobol, self.water.parameters.seed, instance);
+        // The first number decides about whitecaps, where they are drawn.
+        numbers.next();
+        let surface = self.waves.surface(numbers, 0.0);
+        let at = surface.point([0.0; 2]);
+        let area = source[2] - at.slope[0] * source[0] - at.slope[1] * source[1];
+        if area <= 0.0 {
+            return;
+        }
+        let position = DVec3::new(0.0, 0.0, at.height);
+        let mut path = Path::default();
+        let lit = !path.hides(&surface, position, DVec3::from(source) * LASER);
+        let whitecap = self.water.whitecap_probability(at.acceleration);
+        let point = SeaPoint { position, normal: at.normal(), area, lit, whitecap };
+        look(&point, &surface, &mut path);
+    }
+
+    fn add(
+        &self,
+        sums: &mut Sums,
+        point: &SeaPoint,
+        source: [f64; 3],
+        way: [f64; 3],
+        visible: impl FnOnce() -> bool,
+    ) {
+        sums.shown += point.area;
+        if DVec3::from(way).dot(point.normal.into()) <= 0.0 {
+            return;
+        }
+        let f = self.water.lobe.facets.eval(source, way, point.normal) / self.reflectance(source, way);
+        let open = point.area * (1.0 - point.whitecap);
+        let areas = [open * f, open * f * f, point.area * point.whitecap, point.area];
+        let visible = point.lit && visible();
+        for (k, x) in areas.into_iter().enumerate() {
+            sums.facing[k] += x;
+            if visible {
+                sums.seen[k] += x;
+            }
+        }
+    }
+
+    /// The mean lobe across the plane.
+    fn across(&self, planes: &Planes, reach: f64) -> Result<Across, Error> {
+        let phis: Vec<f64> = (-ACROSS..=ACROSS).map(|i| reach * f64::from(i) / f64::from(ACROSS)).collect();
+        let directions: Vec<_> = phis.iter().map(|phi| planes.across(*phi)).collect();
+        let values: Vec<f64> = self.moments(planes, &directions)?.iter().map(|m| m.facets).collect();
+        Ok(Across { fit: Gaussian::fit(&phis, &values), phis })
+    }
+
+    /// Fits of single surfaces' lobes across the plane, with their weights.
+    fn fits(&self, planes: &Planes, phis: &[f64]) -> Vec<(f64, Option<Gaussian>)> {
+        let source = planes.source();
+        let ways: Vec<_> = phis.iter().map(|phi| planes.across(*phi)).collect();
+        let rho: Vec<f64> = ways.iter().map(|way| self.reflectance(source, *way)).collect();
+        let fit = |instance: u64| {
+            let mut found = (0.0, None);
+            self.point(instance, source, |point, surface, path| {
+                if !point.lit {
+                    return;
+                }
+                let curve: Vec<f64> = ways
+                    .iter()
+                    .zip(&rho)
+                    .map(|(way, rho)| {
+                        let f = self.water.lobe.facets.eval(source, *way, point.normal) / rho;
+                        let observer = DVec3::from(*way) * OBSERVERS;
+                        if f > 0.0 && way[2] > 0.0 && !path.hides(surface, point.position, observer) {
+                            f
+                        } else {
+                            0.0
+                        }
+                    })
+                    .collect();
+                found = (point.area, Gaussian::fit(phis, &curve));
+            });
+            found
+        };
+        (0..self.water.parameters.instances.min(FITS)).into_par_iter().map(fit).collect()
+    }
+
+    /// rho between two directions (Eqs. 61-63).
+    fn reflectance(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        let half = 0.5 * (0..3).map(|k| (i[k] + o[k]).powi(2)).sum::<f64>().sqrt();
+        self.water.lobe.facets.reflectance.eval(half.min(1.0))
     }
 }
 
-/// rho between two directions (Eqs. 61-63).
-fn reflectance(water: &Water, i: [f64; 3], o: [f64; 3]) -> f64 {
-    let half = 0.5 * (0..3).map(|k| (i[k] + o[k]).powi(2)).sum::<f64>().sqrt();
-    water.lobe.facets.reflectance.eval(half.min(1.0))
+/// The mean lobe across the plane.
+struct Across {
+    phis: Vec<f64>,
+    fit: Option<Gaussian>,
+}
+
+/// A point of a drawn surface that faces the source.
+struct SeaPoint {
+    position: DVec3,
+    normal: [f64; 3],
+    /// Shown to the source, per level area.
+    area: f64,
+    /// No wave stands between it and the source.
+    lit: bool,
+    /// Probability of a whitecap there.
+    whitecap: f64,
+}
+
+/// Sums of [`Moments`] and of 1, times the area shown to the source.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// Of the area alone, wherever it faces the source.
+    shown: f64,
+    /// Where the surface faces both.
+    facing: [f64; 4],
+    /// And nothing stands in the way of either.
+    seen: [f64; 4],
+}
+
+impl Sums {
+    fn add(&mut self, other: &Self) {
+        self.shown += other.shown;
+        for k in 0..4 {
+            self.facing[k] += other.facing[k];
+            self.seen[k] += other.seen[k];
+        }
+    }
+
+    /// The moments, for the area that as many level surfaces show the source.
+    fn mean(&self, level: f64) -> Moments {
+        let [facets, facets2, whitecaps, _] = self.seen.map(|x| x / level);
+        Moments { facets, facets2, whitecaps }
+    }
+
+    /// What hiding makes of each of them.
+    fn visible(&self, level: f64) -> [f64; 3] {
+        let share = |k: usize| (self.facing[k] > 0.0).then(|| self.seen[k] / self.facing[k]);
+        [0, 1, 2].map(|k| self.shown / level * share(k).or(share(3)).unwrap_or(0.0))
+    }
 }

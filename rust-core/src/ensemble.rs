@@ -341,24 +341,35 @@ impl Samples {
         let mean = |value: &dyn Fn(&Hit, &Observation) -> f64| {
             self.of(engagement, observer).map(|(_, hit, seen)| value(hit, seen)).sum::<f64>() / n
         };
-        let mut sorted: Vec<f64> = self.of(engagement, observer).map(|(_, _, seen)| seen.f).collect();
-        sorted.sort_unstable_by(f64::total_cmp);
-        let average = mean(&|_, seen| seen.f);
-        let std = mean(&|_, seen| (seen.f - average).powi(2)).sqrt();
+        let values = self.of(engagement, observer).map(|(_, _, seen)| seen.f).collect();
         Statistics {
-            mean: average,
-            std,
-            sem: std / n.sqrt(),
-            min: sorted[0],
-            quantiles: QUANTILES.map(|level| quantile(&sorted, level)),
-            max: sorted[sorted.len() - 1],
             mean_f_cos: mean(&|_, seen| seen.f * seen.cos_r.max(0.0)),
             obscured: mean(&|_, seen| f64::from(seen.obscured)),
             whitecap: mean(&|hit, _| hit.whitecap),
-            over: limits
-                .iter()
-                .map(|limit| (sorted.len() - sorted.partition_point(|f| f <= limit)) as f64 / n)
-                .collect(),
+            ..Statistics::of(values, limits)
+        }
+    }
+}
+
+impl Statistics {
+    /// Of at least one value of f; of what is not f nothing is known.
+    pub(crate) fn of(mut values: Vec<f64>, limits: &[f64]) -> Self {
+        let n = values.len() as f64;
+        values.sort_unstable_by(f64::total_cmp);
+        let mean = values.iter().sum::<f64>() / n;
+        let std = (values.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / n).sqrt();
+        let over = |limit: &f64| (values.len() - values.partition_point(|f| f <= limit)) as f64 / n;
+        Self {
+            mean,
+            std,
+            sem: std / n.sqrt(),
+            min: values[0],
+            quantiles: QUANTILES.map(|level| quantile(&values, level)),
+            max: values[values.len() - 1],
+            mean_f_cos: f64::NAN,
+            obscured: f64::NAN,
+            whitecap: f64::NAN,
+            over: limits.iter().map(over).collect(),
         }
     }
 }

@@ -71,6 +71,14 @@ pub enum Error {
         /// What was expected.
         expected: &'static str,
     },
+    /// A file that is not a table of the empirical model, or one that cannot be used.
+    #[error("table = {name}: {reason}")]
+    Table {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// Arrays of a batch whose lengths do not belong together.
     #[error("{what} holds {found} rows, expected {expected}")]
     Length {
@@ -100,6 +108,7 @@ impl Error {
             | Self::UnknownChoice { parameter, .. }
             | Self::WrongType { parameter, .. } => vec![parameter],
             Self::Conflict { first, second, .. } => vec![second, first],
+            Self::Table { .. } => vec!["table"],
             Self::UnknownParameter { .. } | Self::Row { .. } | Self::Length { .. } => vec![],
         }
     }

@@ -20,6 +20,7 @@ use crate::surface::normal;
 use crate::{Error, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Every how many nodes of the table are used where a sum over all slopes is smooth, and where it has a kink.
 const COARSE: usize = 4;
@@ -36,7 +37,7 @@ pub struct Exact {
     /// Obscuration by Smith's share; off for what a point of the surface would reflect if nothing stood in the way.
     pub obscuration: bool,
     /// `None`: no waves, the surface is level.
-    slopes: Option<Slopes>,
+    slopes: Option<Arc<Slopes>>,
     rule: Vec<(f64, f64)>,
 }
 
@@ -49,6 +50,8 @@ pub struct Means {
     pub f_cos: f64,
     /// Mean of f squared, 1/sr^2.
     pub f_squared: f64,
+    /// Share of draws in which a whitecap is seen.
+    pub whitecaps: f64,
 }
 
 impl Exact {
@@ -61,9 +64,14 @@ impl Exact {
             water: *water,
             wind: WindFrame::new(waves.wind_azimuth),
             obscuration: true,
-            slopes: component.map(|component| Slopes::new(&component, water)).transpose()?,
+            slopes: component.map(|component| Slopes::new(&component, water).map(Arc::new)).transpose()?,
             rule: gauss_legendre(NODES),
         })
+    }
+
+    /// The same sea under a wind from another azimuth, in degrees: nothing is tabulated again.
+    pub(crate) fn turned(&self, degrees: f64) -> Self {
+        Self { water: self.water.turned(degrees), wind: WindFrame::new(degrees.to_radians()), ..self.clone() }
     }
 
     /// Means of f for every observer of an engagement.
@@ -75,7 +83,7 @@ impl Exact {
     /// Everything for every observer of an engagement; quantiles and exceedances to 0.01 in probability.
     pub fn statistics(&self, engagement: &Engagement, limits: &[f64]) -> Vec<Statistics> {
         let source = self.source(engagement);
-        let points = self.slopes.as_ref().map_or(vec![], Slopes::points);
+        let points = self.slopes.as_ref().map_or(vec![], |slopes| slopes.points());
         self.each(engagement, |o| {
             let means = self.mean(&source, o);
             let (distribution, whitecaps) = self.distribution(&points, &source, o);
@@ -128,7 +136,7 @@ impl Exact {
         let i = source.direction;
         let Some(slopes) = &self.slopes else {
             let f = if o.z > 0.0 { lobe.facets.eval(i.into(), o.into(), [0.0, 0.0, 1.0]) } else { 0.0 };
-            return Means { f, f_cos: f * o.z.max(0.0), f_squared: f * f };
+            return Means { f, f_cos: f * o.z.max(0.0), f_squared: f * f, whitecaps: 0.0 };
         };
         let mut means = Means::default();
         self.integrate(slopes, i, o, |s, weight, density, capped| {
@@ -151,11 +159,13 @@ impl Exact {
             means.f += f * share;
             means.f_squared += f * f * share;
             means.f_cos += f * share_cos;
+            means.whitecaps = share;
         }
         let scale = self.visible(source, o) / source.lit;
         // Far out, where the density is nothing but ripples, sums may fall below 0.
-        let [f, f_cos, f_squared] = [means.f, means.f_cos, means.f_squared].map(|sum| (scale * sum).max(0.0));
-        Means { f, f_cos, f_squared }
+        let sums = [means.f, means.f_cos, means.f_squared, means.whitecaps];
+        let [f, f_cos, f_squared, whitecaps] = sums.map(|sum| (scale * sum).max(0.0));
+        Means { f, f_cos, f_squared, whitecaps }
     }
 
     /// Calls `add` with slope, area, density and W at the nodes of a rectangle that holds where the drawn slopes and

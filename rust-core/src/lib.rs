@@ -35,7 +35,9 @@
 //! | [`ensemble`] | section 7: statistics over drawn surfaces |
 //! | [`exact`] | the same for infinitely many, without draws |
 //! | [`planes`] | 80-89: in the plane of incidence and across it |
-//! | [`empirical`] | 89-91: the report's empirical model, for one angle of incidence |
+//! | [`empirical`] | section 9: what the empirical model holds, from the full one |
+//! | [`table`], [`table_file`] | its tables, made, read and written |
+//! | [`EmpiricalLobe`] | 83-91: the empirical model, evaluated |
 //! | [`EnsembleLobe`] | the BRDF of a wavy sea seen from afar |
 //! | [`InstanceLobe`] | that of one drawn sea, place by place |
 //! | [`FacetTable`] | facets where the footprint changes from place to place |
@@ -51,6 +53,7 @@ mod c_api;
 pub mod cast;
 mod characteristic;
 pub mod empirical;
+mod empirical_lobe;
 pub mod ensemble;
 pub mod ensemble_lobe;
 mod error;
@@ -65,6 +68,7 @@ mod parameters;
 pub mod planes;
 mod quadrature;
 pub mod real;
+mod reference_lobe;
 pub mod sampling;
 pub mod scenario;
 pub mod shadowing;
@@ -72,6 +76,8 @@ mod slope_density;
 pub mod slopes;
 pub mod spectrum;
 pub mod surface;
+pub mod table;
+pub mod table_file;
 mod trigonometry;
 pub mod vocabulary;
 pub mod waves;
@@ -79,6 +85,7 @@ pub mod whitecap;
 pub mod wind;
 
 pub use brdf::Lobe;
+pub use empirical_lobe::{EmpiricalLobe, Estimate};
 pub use ensemble::{Ensemble, Presence, Statistics};
 pub use ensemble_lobe::EnsembleLobe;
 pub use error::Error;
@@ -88,11 +95,12 @@ pub use grid::Layout;
 pub use instance_lobe::InstanceLobe;
 pub use mesh::Mesh;
 pub use optics::Fresnel;
-pub use parameters::{Average, Body, Parameters, Readings, Surface, Water};
+pub use parameters::{Across, Average, Body, Parameters, Readings, Surface, Water};
 pub use real::Real;
 pub use sampling::Sample;
 pub use scenario::{Aim, Engagement};
 pub use slopes::SlopeMeasure;
 pub use surface::Surface as RealisedSurface;
+pub use table::Table;
 pub use waves::Draws;
 pub use wind::{Wind, WindProfile};

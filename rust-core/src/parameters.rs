@@ -38,6 +38,8 @@ pub enum Surface {
     Instance,
     /// The mean over all drawn waves.
     Ensemble,
+    /// The report's empirical model of it, from a table.
+    Empirical,
 }
 
 /// What a sea from afar reflects on average, of what its waves do.
@@ -48,6 +50,16 @@ pub enum Average {
     Power,
     /// The report's mean of f, times the cosine to the vertical.
     Report,
+}
+
+/// How the empirical model falls off across the plane of incidence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Across {
+    /// As the report's Gaussian, Eq. 90.
+    #[default]
+    Report,
+    /// As the density of all slopes, drawn waves' and facets', in closed form.
+    Slopes,
 }
 
 /// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.
@@ -63,6 +75,8 @@ pub struct Parameters {
     pub surface: Surface,
     /// What the mean over all drawn waves is of; has no effect on other surfaces.
     pub average: Average,
+    /// How the empirical model falls off across the plane; has no effect on other surfaces.
+    pub across: Across,
     /// The report's M: waves of a drawn surface.
     pub components: u32,
     /// The report's N: drawn surfaces of an ensemble.
@@ -103,6 +117,7 @@ impl Default for Parameters {
             footprint: f64::INFINITY,
             surface: Surface::Flat,
             average: Average::Power,
+            across: Across::Report,
             components: 5,
             instances: 50,
             seed: 0,
@@ -156,6 +171,14 @@ impl Water {
             return 0.0;
         }
         whitecap::probability(self.wind.friction_velocity, 100.0 * acceleration)
+    }
+
+    /// The same sea under a wind from another azimuth, in degrees.
+    pub(crate) fn turned(mut self, degrees: f64) -> Self {
+        self.parameters.wind_direction = degrees;
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        (self.lobe.facets.sin_wind, self.lobe.facets.cos_wind) = (sin, cos);
+        self
     }
 
     /// What the waves longer than two footprints are drawn from.
@@ -246,6 +269,7 @@ impl Parameters {
             scale: eq_56 / (std::f64::consts::TAU * sigma_u * sigma_c),
             c21,
             c03,
+            least_correction: 0.0,
             steep_cos,
             steep_gain,
             sigma_shadow: shadowing::sigma(wind.w10),

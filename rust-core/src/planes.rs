@@ -28,6 +28,11 @@ impl Planes {
         Self { incidence: flat.atan2(source.z), specular, normal_in }
     }
 
+    /// The unit vector to the source.
+    pub fn source(&self) -> [f64; 3] {
+        [-self.specular.x, -self.specular.y, self.specular.z]
+    }
+
     /// theta_r and phi_r of a unit vector to the observer (Eqs. 86-88, signed): the angle from the vertical of its part in
     /// the plane, positive on the specular side, and the angle of its part across the plane from the specular direction, or
     /// from the opposite one where that is nearer, so that it is 0 everywhere in the plane.

@@ -94,6 +94,12 @@ impl Engagement {
         (laser - laser.z / beam.z * beam).truncate().extend(0.0).into()
     }
 
+    /// Unit vectors from the target to the laser and to every observer (Eqs. 83, 86).
+    pub fn ways(&self) -> impl Iterator<Item = [[f64; 3]; 2]> {
+        let (place, source) = (DVec3::from(self.target()), -DVec3::from(self.direction));
+        self.observers.iter().map(move |o| [source.into(), (DVec3::from(*o) - place).normalize().into()])
+    }
+
     /// m.
     pub fn observers(&self) -> &[[f64; 3]] {
         &self.observers

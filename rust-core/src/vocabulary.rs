@@ -2,7 +2,7 @@
 
 use crate::optics::Fresnel;
 use crate::wind::Wind;
-use crate::{Average, Body, Error, Parameters, Readings, SlopeMeasure, Surface, Water};
+use crate::{Across, Average, Body, Error, Parameters, Readings, SlopeMeasure, Surface, Water};
 
 /// A parameter as documentation and help show it.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +22,7 @@ const fn entry(name: &'static str, unit: &'static str, default: &'static str, he
 }
 
 /// Every parameter.
-pub const ENTRIES: [Entry; 23] = [
+pub const ENTRIES: [Entry; 24] = [
     entry("wind_speed", "m/s", "5", "wind speed at wind_height; 0 is calm"),
     entry("wind_height", "m", "10", "height at which wind_speed is measured, 0.1 to 100"),
     entry("friction_velocity", "cm/s", "", "friction velocity w* instead of wind_speed, 0 to 238.65"),
@@ -38,13 +38,20 @@ pub const ENTRIES: [Entry; 23] = [
         "surface",
         "",
         "flat",
-        "which surface the facets lie on: flat, instance (drawn waves) or ensemble (their mean)",
+        "which surface the facets lie on: flat, instance (drawn waves), ensemble (their mean) or empirical (a table's)",
     ),
     entry(
         "average",
         "",
         "power",
         "what an ensemble's mean is of: power, or the report's mean of f (times the flat cosine)",
+    ),
+    entry(
+        "across",
+        "",
+        "report",
+        "how the empirical model falls off across the plane: as the report's Gaussian, or as the slopes' density: \
+         report or slopes",
     ),
     entry("components", "", "5", "the report's M: waves of a drawn surface, 1 to 65536"),
     entry("instances", "", "50", "the report's N: drawn surfaces of an ensemble"),
@@ -72,8 +79,17 @@ pub const ENTRIES: [Entry; 23] = [
 pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
 
 /// The parameters that do not describe the sea, but how its surface reflects.
-pub const OPTICS: [&str; 8] =
-    ["average", "wavelength", "ior", "fresnel", "slope_measure", "readings", "shadowing", "gram_charlier"];
+pub const OPTICS: [&str; 9] = [
+    "average",
+    "across",
+    "wavelength",
+    "ior",
+    "fresnel",
+    "slope_measure",
+    "readings",
+    "shadowing",
+    "gram_charlier",
+];
 
 /// A value as scene files, flags and C hand it over.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,8 +143,13 @@ fn flag(parameter: &'static str, value: &Value) -> Result<bool, Error> {
     }
 }
 
-const SURFACES: [(&str, Surface); 3] =
-    [("flat", Surface::Flat), ("instance", Surface::Instance), ("ensemble", Surface::Ensemble)];
+const SURFACES: [(&str, Surface); 4] = [
+    ("flat", Surface::Flat),
+    ("instance", Surface::Instance),
+    ("ensemble", Surface::Ensemble),
+    ("empirical", Surface::Empirical),
+];
+const ACROSS: [(&str, Across); 2] = [("report", Across::Report), ("slopes", Across::Slopes)];
 const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Average::Report)];
 /// Footprint of a surface with waves of its own, m, unless one is given.
 const WAVY_FOOTPRINT: f64 = 0.15;
@@ -169,6 +190,7 @@ impl Parameters {
             ("footprint", _) => number(self.footprint),
             ("surface", _) => word(&self.surface, &SURFACES),
             ("average", _) => word(&self.average, &AVERAGES),
+            ("across", _) => word(&self.across, &ACROSS),
             ("components", _) => number(f64::from(self.components)),
             ("instances", _) => number(self.instances as f64),
             ("seed", _) => number(self.seed as f64),
@@ -287,6 +309,7 @@ impl Builder {
             "footprint" => self.footprint = Some(number(name, value)?),
             "surface" => p.surface = choice(name, value, &SURFACES)?,
             "average" => p.average = choice(name, value, &AVERAGES)?,
+            "across" => p.across = choice(name, value, &ACROSS)?,
             "components" => p.components = whole(name, value)?,
             "instances" => p.instances = whole(name, value)?,
             "seed" => p.seed = whole(name, value)?,
@@ -322,7 +345,7 @@ impl Builder {
         p.footprint = match (self.footprint, p.surface) {
             (Some(footprint), _) => footprint,
             (None, Surface::Flat) => f64::INFINITY,
-            (None, Surface::Instance | Surface::Ensemble) => WAVY_FOOTPRINT,
+            (None, Surface::Instance | Surface::Ensemble | Surface::Empirical) => WAVY_FOOTPRINT,
         };
         if let Some(h) = self.wind_height {
             match &mut p.wind {
@@ -352,6 +375,7 @@ mod tests {
             ("footprint", Value::Number(0.15)),
             ("surface", Value::Text("instance".into())),
             ("average", Value::Text("report".into())),
+            ("across", Value::Text("slopes".into())),
             ("components", Value::Number(20.0)),
             ("instances", Value::Number(1e6)),
             ("seed", Value::Number(12345.0)),
@@ -409,6 +433,7 @@ mod tests {
                 footprint: 1e-7,
                 surface: Surface::Instance,
                 average: Average::Report,
+                across: Across::Slopes,
                 components: 20,
                 instances: 1_000_000,
                 seed: 9_007_199_254_740_991,
@@ -474,6 +499,7 @@ mod tests {
             ("footprint", number(f64::NAN)),
             ("surface", text("lumpy")),
             ("average", text("median")),
+            ("across", text("diagonal")),
             ("components", number(0.0)),
             ("components", number(1e5)),
             ("components", number(2.5)),

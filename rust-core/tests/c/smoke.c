@@ -26,6 +26,52 @@ static void refuses(const char *name, const char *value) {
     prob_water_options_free(options);
 }
 
+/* The empirical model: a table's mean with its uncertainty. */
+static void empirical(void) {
+    struct ProbWaterOptions *options = prob_water_options_new();
+    struct ProbWater *sea = NULL, *flat = NULL;
+    /* Mirrors at 30 degrees and overhead; at 87 degrees, outside of the table; below the horizon. */
+    const double s = 0.99862953475457387, c = 0.052335956242943835;
+    double to_source[12] = {-0.5, 0, 0.8660254037844386, 0, 0, 1, -0.99862953475457387, 0, 0.052335956242943835, 0, 0, 1};
+    double to_observer[12] = {0.5, 0, 0.8660254037844386, 0, 0, 1, 0, 0, 1, 0, 0, -1};
+    double normals[12] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, uniforms[3] = {0.3, 0.6, 0.1}, drawn[3];
+    double mean[4], spread[4], f[4], pdf[4], density;
+    unsigned char outside[4];
+
+    to_observer[6] = s;
+    to_observer[8] = c;
+    check(prob_water_options_set(options, "friction_velocity", "8") == PROB_WATER_STATUS_OK, "wind");
+    check(prob_water_configure(options, &flat) == PROB_WATER_STATUS_OK, "a flat sea");
+    check(prob_water_options_set(options, "surface", "empirical") == PROB_WATER_STATUS_OK, "empirical");
+    check(prob_water_configure(options, &sea) == PROB_WATER_STATUS_OK, "the library's own table");
+    check(prob_water_estimate(sea, 4, to_source, to_observer, mean, spread, outside) == PROB_WATER_STATUS_OK, "estimate");
+    check(mean[0] > 0.1 && mean[0] < 0.2 && spread[0] > 0.05 && spread[0] < 0.2, "the base scenario's peak");
+    check(mean[3] == 0 && spread[3] == 0, "nothing from below");
+    check(!outside[0] && !outside[1] && outside[2] && !outside[3], "outside of the grid is told");
+    check(prob_water_eval(sea, 4, to_source, to_observer, NULL, f) == PROB_WATER_STATUS_OK, "eval");
+    check(fabs(f[0] / mean[0] - 1) < 1e-12 && fabs(f[2] / mean[2] - 1) < 1e-12, "eval is the mean");
+    check(prob_water_eval(sea, 4, to_source, to_observer, normals, f) == PROB_WATER_STATUS_ARGUMENT, "normals");
+    check(prob_water_estimate(flat, 1, to_source, to_observer, mean, spread, outside) == PROB_WATER_STATUS_ARGUMENT,
+          "a flat sea has no estimate");
+    check(prob_water_sample(sea, 1, to_source, uniforms, drawn, pdf, f) == PROB_WATER_STATUS_OK, "sample");
+    check(prob_water_pdf(sea, 1, to_source, drawn, NULL, &density) == PROB_WATER_STATUS_OK, "pdf");
+    check(prob_water_estimate(sea, 1, to_source, drawn, mean, spread, outside) == PROB_WATER_STATUS_OK, "estimate of it");
+    check(density == pdf[0] && fabs(f[0] / mean[0] - 1) < 1e-12, "sample, pdf and estimate agree");
+    prob_water_free(sea);
+    sea = NULL;
+    check(prob_water_options_set(options, "table", "/nowhere/table.npz") == PROB_WATER_STATUS_OK, "a table by its path");
+    check(prob_water_configure(options, &sea) == PROB_WATER_STATUS_PARAMETER && sea == NULL, "no such file");
+    check(strstr(prob_water_last_error(), "table = /nowhere/table.npz") != NULL, "the message names it");
+    prob_water_options_free(options);
+    options = prob_water_options_new();
+    check(prob_water_options_set(options, "surface", "empirical") == PROB_WATER_STATUS_OK, "surface");
+    check(prob_water_options_set(options, "components", "20") == PROB_WATER_STATUS_OK, "components");
+    check(prob_water_configure(options, &sea) == PROB_WATER_STATUS_PARAMETER && sea == NULL, "another sea than the table's");
+    check(strstr(prob_water_last_error(), "components = 20") != NULL, "the message names what differs");
+    prob_water_options_free(options);
+    prob_water_free(flat);
+}
+
 int main(void) {
     struct ProbWaterOptions *options = prob_water_options_new();
     struct ProbWater *sea = NULL;
@@ -86,6 +132,8 @@ int main(void) {
     refuses("depth", "shallow");
     refuses("whitecaps", "maybe");
     refuses("waves", "3");
+
+    empirical();
 
     prob_water_free(sea);
     prob_water_free(NULL);
