@@ -68,8 +68,9 @@ class Command:
         return subprocess.run([self.path, "--version"], capture_output=True, text=True, check=True).stdout.strip()
 
     def scenario(self, case: Case, observers: np.ndarray, instances: int,
-                 presence: str = "expected") -> Table:
-        """Statistics for observers (unit vectors) of the base scenario changed by `case`."""
+                 presence: str | None = "expected") -> Table:
+        """Statistics for observers (unit vectors) of the base scenario changed by `case`; an empirical sea has no
+        presence of whitecaps."""
         with tempfile.TemporaryDirectory() as directory:
             file = Path(directory, "scenario.toml")
             file.write_text(toml(case, observers, instances, presence))
@@ -99,13 +100,14 @@ def column(values: Iterable[Any]) -> np.ndarray:
         return np.array(values)
 
 
-def toml(case: Case, observers: np.ndarray, instances: int, presence: str) -> str:
+def toml(case: Case, observers: np.ndarray, instances: int, presence: str | None) -> str:
     """The scenario file: the laser 10 km away, the observers 100 km, the beam aimed at the origin (Eq. 80)."""
     model = BASE | OPTICS | {"instances": instances} | case
     laser = LASER_DISTANCE * incident(model.pop("incidence"))
     engagement = {"laser": laser.tolist(), "target": [0.0, 0.0, 0.0],
                   "observers": (OBSERVER_DISTANCE * observers).tolist()}
-    parts = [f"whitecap_presence = {json.dumps(presence)}", "[model]", *assignments(model),
+    asked = {"whitecap_presence": presence} if presence else {}
+    parts = [*assignments(asked), "[model]", *assignments(model),
              "[[engagement]]", *assignments(engagement)]
     return "\n".join(parts) + "\n"
 

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import figure_base
+import figure_empirical
 import figure_plot as plot
 import figure_sea
 import figure_variation
@@ -16,7 +17,8 @@ from figure_claim import Figure
 from figure_data import COMMAND, Command, CommandError, write
 from figure_page import Result, page
 
-FIGURES: list[Figure] = sorted(figure_sea.FIGURES + figure_base.FIGURES + figure_variation.FIGURES,
+FIGURES: list[Figure] = sorted(figure_sea.FIGURES + figure_base.FIGURES + figure_variation.FIGURES
+                               + figure_empirical.FIGURES,
                                key=lambda figure: figure.name)
 #: Instances of an average; the tests run the quick number.
 INSTANCES, QUICK_INSTANCES = 50_000, 10_000

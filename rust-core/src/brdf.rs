@@ -33,8 +33,6 @@ pub struct Facets<T: Real> {
     pub c21: T,
     /// Skewness c03 of Eq. 78.
     pub c03: T,
-    /// What Eq. 78 is clamped to from below: 0, but for lobes that others are compared with.
-    pub least_correction: T,
     /// Cosine of the tilt beyond which `exp(-xi^2/2 sigma^2)/cos^4 xi` would rise again ([`steep_facets`]).
     pub steep_cos: T,
     /// 1/cos^4 of that tilt.
@@ -161,7 +159,7 @@ impl<T: Real> Facets<T> {
         }
         if self.gram_charlier {
             let correction = gram_charlier(self.c21.wide(), self.c03.wide(), u, c, self.as_printed);
-            p = p * Real::max(correction, self.least_correction.wide());
+            p = p * Real::max(correction, T::Wide::of(0.0));
         }
         p
     }
@@ -267,7 +265,6 @@ impl Lobe<f64> {
                 scale: T::of(f.scale),
                 c21: T::of(f.c21),
                 c03: T::of(f.c03),
-                least_correction: T::of(f.least_correction),
                 steep_cos: T::of(f.steep_cos),
                 steep_gain: T::of(f.steep_gain),
                 sigma_shadow: T::of(f.sigma_shadow),

@@ -17,7 +17,7 @@ use crate::cast::Path;
 use crate::characteristic::variances;
 use crate::gaussian_fit::Gaussian;
 use crate::planes::Planes;
-use crate::reference_lobe::Reference;
+use crate::reference_lobe::Spreads;
 use crate::surface::Surface;
 use crate::waves::{Draws, Numbers, Waves};
 use crate::{Engagement, Error, Exact, Water};
@@ -73,6 +73,9 @@ impl Moments {
 pub struct Node {
     /// For every angle theta_r in the plane that was asked for.
     pub in_plane: Vec<Moments>,
+    /// There, the facets' f over rho, 1/sr, as if all of them lay on level water: their density along the half vector on
+    /// all waves together, times shadowing and Smith's share of what drawn waves leave visible. The mean is near it.
+    pub approximate: Vec<f64>,
     /// sigma(0) of Eq. 89, radians: the 1/e half width of the mean lobe across the plane, over cos theta_i; 0 where it
     /// has no peak.
     pub sigma: f64,
@@ -92,37 +95,26 @@ pub struct Full {
     /// Its parameters give the seed and the number of instances. Whitecaps reflect nothing: they are counted.
     water: Water,
     waves: Waves,
-    /// `None` where there are too few components for it.
-    exact: Option<Exact>,
-    reference: Reference,
+    exact: Exact,
+    spreads: Spreads,
 }
 
 impl Full {
-    /// Of a sea with drawn waves. Refused as by [`Exact::new`], but for few components.
+    /// Of a sea with drawn waves; refused as by [`Exact::new`].
     pub fn new(water: &Water) -> Result<Self, Error> {
         let mut water = *water;
         water.lobe.whitecap_brdf = 0.0;
-        let exact = match Exact::new(&water) {
-            Err(Error::OutOfRange { parameter: "components", .. }) => None,
-            exact => {
-                let mut exact = exact?;
-                exact.obscuration = false;
-                Some(exact)
-            }
-        };
-        Ok(Self { water, waves: water.waves(), exact, reference: Reference::new(&water) })
+        let mut exact = Exact::new(&water)?;
+        exact.obscuration = false;
+        Ok(Self { water, waves: water.waves(), exact, spreads: Spreads::new(&water) })
     }
 
     /// The same sea under a wind from another azimuth, in degrees, counted from the plane of incidence, away from the
     /// source.
     pub fn turned(&self, degrees: f64) -> Self {
         let water = self.water.turned(degrees);
-        Self {
-            water,
-            waves: water.waves(),
-            exact: self.exact.as_ref().map(|exact| exact.turned(degrees)),
-            reference: self.reference.turned(degrees),
-        }
+        let exact = self.exact.turned(degrees);
+        Self { water, waves: water.waves(), exact, spreads: self.spreads.turned(degrees) }
     }
 
     /// The numbers for an angle of incidence, looked at from angles theta_r; radians. The source stands towards -x,
@@ -154,8 +146,14 @@ impl Full {
             (square / known.max(f64::MIN_POSITIVE)).sqrt()
         };
         let directions: Vec<_> = thetas.iter().map(|theta| planes.in_plane(*theta)).collect();
+        let approximate = |o: &[f64; 3]| {
+            let level =
+                self.exact.facets_along(source.into(), (*o).into()) * self.spreads.shadowing(source, *o);
+            level * self.spreads.share(source, *o)
+        };
         Ok(Node {
             in_plane: self.moments(&planes, &directions)?,
+            approximate: directions.iter().map(approximate).collect(),
             sigma: across.fit.map_or(0.0, |g| g.width / cos),
             u_sigma: spread(&|g| g.width / cos),
             delta: across.fit.map_or(0.0, |g| g.center),
@@ -173,24 +171,20 @@ impl Full {
             return Ok(moments);
         }
         let seen: Vec<[f64; 3]> = above.iter().map(|k| directions[*k]).collect();
-        let open = match &self.exact {
-            Some(exact) => {
-                let engagement = Engagement::far(planes.incidence.to_degrees(), LASER, &seen, OBSERVERS)?;
-                let means = exact.means(&engagement);
-                let all = means.iter().zip(&seen).map(|(m, o)| {
-                    let rho = self.reflectance(source, *o);
-                    Moments { facets: m.f / rho, facets2: m.f_squared / (rho * rho), whitecaps: m.whitecaps }
-                });
-                Some(all.collect::<Vec<_>>())
-            }
-            None => None,
-        };
+        let engagement = Engagement::far(planes.incidence.to_degrees(), LASER, &seen, OBSERVERS)?;
+        let open = self.exact.means(&engagement).into_iter().zip(&seen).map(|(m, o)| {
+            let rho = self.reflectance(source, *o);
+            Moments { facets: m.f / rho, facets2: m.f_squared / (rho * rho), whitecaps: m.whitecaps }
+        });
+        for (k, open) in above.iter().zip(open) {
+            moments[*k] = open;
+        }
         // How much drawn surfaces matter: by the direction that sees least.
         let [start, end] = HIDDEN.map(f64::ln);
-        let of_source = self.reference.hidden(source);
+        let of_source = self.spreads.hidden(source);
         let weight = |o: [f64; 3]| {
-            let t = (of_source.max(self.reference.hidden(o)).max(1e-30).ln() - start) / (end - start);
-            let t = if open.is_some() { t.clamp(0.0, 1.0) } else { 1.0 };
+            let t = (of_source.max(self.spreads.hidden(o)).max(1e-30).ln() - start) / (end - start);
+            let t = t.clamp(0.0, 1.0);
             t * t * (3.0 - 2.0 * t)
         };
         let weights: Vec<f64> = seen.iter().map(|o| weight(*o)).collect();
@@ -202,15 +196,7 @@ impl Full {
         let level = instances as f64 * source[2];
         for (k, sums) in hidden.iter().zip(sums) {
             let at = &mut moments[above[*k]];
-            *at = match &open {
-                Some(open) => open[*k].times(sums.visible(level), weights[*k]),
-                None => sums.mean(level),
-            };
-        }
-        if let Some(open) = open {
-            for k in (0..seen.len()).filter(|k| weights[*k] == 0.0) {
-                moments[above[k]] = open[k];
-            }
+            *at = at.times(sums.visible(level), weights[*k]);
         }
         Ok(moments)
     }
@@ -380,13 +366,7 @@ impl Sums {
         }
     }
 
-    /// The moments, for the area that as many level surfaces show the source.
-    fn mean(&self, level: f64) -> Moments {
-        let [facets, facets2, whitecaps, _] = self.seen.map(|x| x / level);
-        Moments { facets, facets2, whitecaps }
-    }
-
-    /// What hiding makes of each of them.
+    /// What hiding makes of each of the moments, for the area that as many level surfaces show the source.
     fn visible(&self, level: f64) -> [f64; 3] {
         let share = |k: usize| (self.facing[k] > 0.0).then(|| self.seen[k] / self.facing[k]);
         [0, 1, 2].map(|k| self.shown / level * share(k).or(share(3)).unwrap_or(0.0))

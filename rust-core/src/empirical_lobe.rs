@@ -7,10 +7,10 @@
 //! Beyond the largest angle of incidence in the table it is what it is there, and beyond its angles theta_r the ratio to
 //! the closed form is: [`Estimate::outside`] says so.
 
-use crate::brdf::{Parts, up};
+use crate::brdf::Parts;
 use crate::empirical::Moments;
 use crate::real::Vec3;
-use crate::reference_lobe::Reference;
+use crate::reference_lobe::{NOTHING, Reference};
 use crate::table::Table;
 use crate::waves::{Draws, Numbers};
 use crate::{Across, Engagement, Error, Lobe, Real, Statistics, Water};
@@ -24,8 +24,8 @@ const AZIMUTHS: usize = 32;
 const THETAS: usize = 160;
 /// What stands for the horizon, where the closed form ends; radians.
 const LOWEST: f64 = 1.5690;
-/// The logarithm of nothing.
-const NOTHING: f64 = -87.0;
+/// Nodes on a side of the density of facets, for traced code.
+const DENSITIES: usize = 289;
 
 /// f and what is known of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,14 +44,14 @@ pub struct EmpiricalLobe {
     /// Draws directions, and knows their density: the facets of all waves, and whitecaps in proportion to what they
     /// cover. Its `eval` is not this lobe's.
     pub sampler: Lobe<f64>,
-    /// With [`Across::Slopes`] the closed form.
+    /// With [`Across::Slopes`] what the facets would reflect on level water.
     slopes: Option<Reference>,
     /// Tangents of half the angles theta_i and theta_r between which the table has nodes.
     incidences: [f64; 2],
     thetas: [f64; 2],
     /// By theta_i, azimuth and theta_r: the logarithm of the facets' f in the plane over rho, or with `slopes` of its ratio
-    /// to the closed form; the share of whitecaps; the logarithm of the mean square of the facets' f over its squared mean,
-    /// or with `slopes` of its ratio to the closed form's.
+    /// to level water's; the share of whitecaps; the logarithm of the mean square of the facets' f over its squared mean,
+    /// or with `slopes` of its ratio to Gaussian slopes'.
     in_plane: Vec<[f32; 3]>,
     /// By theta_i and azimuth: sigma, u_sigma, delta, u_delta, radians.
     widths: Vec<[f32; 4]>,
@@ -68,8 +68,9 @@ pub struct FineGrid {
     pub in_plane: Vec<f32>,
     /// Row by row of azimuths: sigma and delta.
     pub widths: Vec<f32>,
-    /// `across = "slopes"`.
-    pub slopes: bool,
+    /// With [`Across::Slopes`] the logarithm of the facets' density along a half vector, over its tilt angles upwind and
+    /// crosswind: nodes on a side, 0 in the middle, the steps between them in radians, and row by row of those upwind.
+    pub densities: Option<(u32, [f64; 2], Vec<f32>)>,
 }
 
 /// Where a pair of directions lies in the fine grid.
@@ -88,7 +89,7 @@ impl EmpiricalLobe {
     /// Of a sea that the table knows; others are refused as by [`Table::check`].
     pub fn new(water: &Water, table: &Table) -> Result<Self, Error> {
         let slice = table.slice(water)?;
-        let reference = Reference::new(water);
+        let reference = Reference::new(water)?;
         let slopes = water.parameters.across == Across::Slopes;
         let [incidences, thetas] = slice.ends().map(|ends| ends.map(|angle| (0.5 * angle).tan()));
         // A table for the vertical alone has a grid all the same.
@@ -106,19 +107,21 @@ impl EmpiricalLobe {
                 let source = [-of_source.sin(), 0.0, of_source.cos()];
                 let cells = in_plane.iter().zip(&all).map(|([ratio, whitecaps, square], theta)| {
                     let o = [theta.sin(), 0.0, theta.cos()];
-                    let (closed, spread) = if slopes {
-                        (reference.visible(source, o), 0.0)
+                    let spreads = &reference.spreads;
+                    let (near, gaussian) = if slopes {
+                        // Hiding is as in the plane, shadowing is the directions' own.
+                        (spreads.share(source, o), 0.0)
                     } else {
-                        (reference.in_plane(source, *theta), reference.ln_square(source, o))
+                        (reference.eval(source, o), spreads.ln_square(source, o))
                     };
-                    [(ratio * closed).ln().max(NOTHING), *whitecaps, square + spread].map(|x| x as f32)
+                    [(ratio * near).ln().max(NOTHING), *whitecaps, square + gaussian].map(|x| x as f32)
                 });
                 (cells.collect::<Vec<_>>(), widths.map(|x| x as f32))
             })
             .collect();
         let widths: Vec<[f32; 4]> = rows.iter().map(|(_, widths)| *widths).collect();
         let in_plane: Vec<[f32; 3]> = rows.into_iter().flat_map(|(cells, _)| cells).collect();
-        let mut sampler = reference.lobe;
+        let mut sampler = reference.sampler(water);
         // As many whitecaps as a source overhead meets.
         sampler.whitecap_fraction = f64::from(in_plane[THETAS / 2][1]);
         let slopes = slopes.then_some(reference);
@@ -141,8 +144,9 @@ impl EmpiricalLobe {
         let [level, whitecaps] = place.in_plane(&self.in_plane, |cell| [cell[0], cell[1]]);
         let mut f = zero;
         if parts.facets {
-            f = if self.slopes.is_some() {
-                T::of(self.closed(i, o)) * level.exp()
+            f = if let Some(reference) = &self.slopes {
+                let [i, o] = [i, o].map(|v| v.map(Real::to_f64));
+                T::of(self.reflectance(i, o) * reference.eval_level(i, o)) * level.exp()
             } else {
                 let [sigma, delta] = place.around(&self.widths, |cell| [cell[0], cell[2]]);
                 let x = (place.phi - delta) / (sigma * place.narrowing);
@@ -169,8 +173,8 @@ impl EmpiricalLobe {
         };
         let [mean, std] = match &self.slopes {
             Some(reference) => {
-                let facets = level.exp() * self.closed(i, o) / rho;
-                brdf(facets, square + reference.ln_square(i, o))
+                let facets = level.exp() * reference.eval_level(i, o);
+                brdf(facets, square + reference.spreads.ln_square(i, o))
             }
             None => {
                 let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths, |cell| *cell);
@@ -210,7 +214,7 @@ impl EmpiricalLobe {
         // Where the lobe peaks: the mean of the facets' f over rho, and of its square over the squared mean.
         let (mean, square, lobe) = match &self.slopes {
             Some(reference) => {
-                (level.exp() * self.closed(i, o) / rho, square + reference.ln_square(i, o), None)
+                (level.exp() * reference.eval_level(i, o), square + reference.spreads.ln_square(i, o), None)
             }
             None => {
                 let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths, |cell| *cell);
@@ -255,10 +259,6 @@ impl EmpiricalLobe {
         let [i, o] = [i, o].map(|v| v.map(Real::to_f64));
         let half = 0.5 * (0..3).map(|k| (i[k] + o[k]).powi(2)).sum::<f64>().sqrt();
         self.sampler.facets.reflectance.eval(half.min(1.0))
-    }
-
-    fn closed<T: Real>(&self, i: Vec3<T>, o: Vec3<T>) -> f64 {
-        self.sampler.facets.eval(i.map(Real::to_f64), o.map(Real::to_f64), up())
     }
 
     #[inline]
@@ -316,7 +316,10 @@ impl EmpiricalLobe {
             incidence: self.incidences[1],
             in_plane: pairs.flat_map(|ends| [ends[0][0], ends[1][0], ends[0][1], ends[1][1]]).collect(),
             widths: self.widths.iter().flat_map(|cell| [cell[0], cell[2]]).collect(),
-            slopes: self.slopes.is_some(),
+            densities: self.slopes.as_ref().map(|reference| {
+                let (cells, steps) = reference.ln_densities(DENSITIES);
+                (DENSITIES as u32, steps, cells)
+            }),
         }
     }
 }

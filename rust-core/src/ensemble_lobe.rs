@@ -17,18 +17,15 @@
 
 use crate::brdf::{Parts, up};
 use crate::characteristic::Component;
-use crate::quadrature::midpoints;
-use crate::slope_density::{Slopes, WindFrame, cubic};
+use crate::facet_density::{Cell, FacetDensity};
+use crate::slope_density::{Slopes, WindFrame};
 use crate::surface::normal;
 use crate::{Average, Error, Lobe, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{SQRT_2, TAU};
 
-/// The table is over the half vector's tilt angles, to so many standard deviations of all slopes, or to the widest
-/// angle in radians, with so many nodes to either side of 0.
-const END: f64 = 6.0;
-const WIDEST: f64 = 1.5;
+/// Nodes of the table to either side of 0.
 const NODES: usize = 36;
 /// Gauss and Hermite's rule: standard deviations and weights.
 const RULE: [(f64, f64); 5] = [
@@ -84,22 +81,9 @@ pub struct Table {
 #[derive(Debug, Clone)]
 struct Waves {
     slopes: Slopes,
-    /// Of the table over the half vector's tilt angles, upwind and crosswind.
-    steps: DVec2,
-    /// Row by row.
-    cells: Vec<Cell>,
+    facets: FacetDensity,
     /// Mean of N_z under whitecaps, and of N_z times the squares of the slope; without N_z for [`Average::Report`].
     foam: (f64, DVec2),
-}
-
-/// Facets along a half vector.
-#[derive(Debug, Clone, Copy, Default)]
-struct Cell {
-    /// D: their density with the 1/4 of Eq. 56, all waves together.
-    density: f64,
-    /// Of the slopes of the waves that carry them.
-    mean: DVec2,
-    variance: DVec2,
 }
 
 impl EnsembleLobe {
@@ -137,7 +121,7 @@ impl EnsembleLobe {
         };
         let report = self.water.parameters.average == Average::Report;
         let half = i + o;
-        let cell = waves.at(self.wind.to_wind(-half.truncate() / half.z));
+        let cell = waves.facets.at(self.wind.to_wind(-half.truncate() / half.z));
         let mut reflected = 0.0;
         if parts.facets && cell.density > 0.0 {
             let visible =
@@ -195,11 +179,11 @@ impl EnsembleLobe {
         const FINER: usize = 5;
         let waves = self.waves.as_ref()?;
         let rows = 2 * FINER * NODES + 1;
-        let steps = waves.steps / FINER as f64;
+        let steps = waves.facets.steps / FINER as f64;
         let middle = (FINER * NODES) as f64;
         let cells = (0..rows * rows).into_par_iter().flat_map_iter(|n| {
             let place = DVec2::new((n / rows) as f64 - middle, (n % rows) as f64 - middle);
-            let Cell { density, mean, variance } = waves.at_angles(place * steps);
+            let Cell { density, mean, variance } = waves.facets.at_angles(place * steps);
             [density, mean.x, mean.y, variance.x, variance.y, 0.0, 0.0, 0.0].map(|x| x as f32)
         });
         let (level, tilted) = waves.foam;
@@ -216,47 +200,9 @@ impl EnsembleLobe {
 
 impl Waves {
     fn new(slopes: Slopes, water: &Water, wind: WindFrame) -> Self {
-        let facets = DVec2::from(water.variances.map(f64::sqrt));
-        let end = END * (facets * facets + slopes.sigma * slopes.sigma).powf(0.5);
-        let steps = end.min(DVec2::splat(WIDEST)) / NODES as f64;
-        let rows = 2 * NODES + 1;
-        let cells = (0..rows * rows)
-            .into_par_iter()
-            .map(|n| {
-                let node = DVec2::new((n / rows) as f64, (n % rows) as f64) - NODES as f64;
-                Cell::new(&slopes, water, wind, (node * steps).map(f64::tan))
-            })
-            .collect();
+        let facets = FacetDensity::new(&slopes, water, wind, NODES);
         let foam = foam(&slopes, water.parameters.average);
-        Self { slopes, steps, cells, foam }
-    }
-
-    /// Facets along a half vector of a slope upwind and crosswind; none beyond the table.
-    fn at(&self, slope: DVec2) -> Cell {
-        self.at_angles(slope.map(f64::atan))
-    }
-
-    /// The same for tilt angles.
-    fn at_angles(&self, angles: DVec2) -> Cell {
-        let place = angles / self.steps + NODES as f64;
-        let rows = 2 * NODES + 1;
-        let (x, y) = (place.x.floor(), place.y.floor());
-        if !(x >= 1.0 && y >= 1.0 && x < (rows - 2) as f64 && y < (rows - 2) as f64) {
-            return Cell::default();
-        }
-        let (along, across) = (cubic(place.x - x), cubic(place.y - y));
-        let mut cell = Cell::default();
-        for (i, wx) in along.iter().enumerate() {
-            let row = (x as usize + i - 1) * rows + y as usize - 1;
-            for (node, wy) in self.cells[row..row + 4].iter().zip(across) {
-                let weight = wx * wy;
-                cell.density += weight * node.density;
-                cell.mean += weight * node.mean;
-                cell.variance += weight * node.variance;
-            }
-        }
-        cell.density = cell.density.max(0.0);
-        cell
+        Self { slopes, facets, foam }
     }
 }
 
@@ -289,40 +235,4 @@ fn foam_mean((level, tilted): (f64, DVec2), (i, i_z): (DVec2, f64), (o, o_z): (D
 /// Gauss's density.
 fn gauss(x: f64) -> f64 {
     (-0.5 * x * x).exp() / TAU.sqrt()
-}
-
-impl Cell {
-    /// Standard deviation of the slopes along a horizontal unit vector upwind and crosswind.
-    fn spread(&self, along: DVec2) -> f64 {
-        (along * along).dot(self.variance).max(0.0).sqrt()
-    }
-
-    /// For a half vector of a slope upwind and crosswind.
-    fn new(slopes: &Slopes, water: &Water, wind: WindFrame, half: DVec2) -> Self {
-        let facets = &water.lobe.facets;
-        let in_world = |v: DVec2| normal(wind.to_world(v).into());
-        let lobe = facets.spread(half);
-        let mut cell = Self::default();
-        let Some((low, high)) = slopes.meeting(half, lobe) else { return cell };
-        let step = slopes.step(lobe);
-        for (x, width) in midpoints(low.x, high.x, step.x) {
-            for (y, height) in midpoints(low.y, high.y, step.y) {
-                let slope = DVec2::new(x, y);
-                let (density, capped) = slopes.at(slope);
-                let n = in_world(slope);
-                let share =
-                    (density - capped) * width * height * facets.density_along(in_world(half), n) / n[2];
-                cell.density += share;
-                cell.mean += share * slope;
-                cell.variance += share * slope * slope;
-            }
-        }
-        if cell.density > 0.0 {
-            cell.mean /= cell.density;
-            cell.variance = (cell.variance / cell.density - cell.mean * cell.mean).max(DVec2::ZERO);
-        } else {
-            cell = Self::default();
-        }
-        cell
-    }
 }

@@ -11,8 +11,10 @@
 //! Smith's for heights that source and observer see together, `(1 + L_i)/(1 + L_i + L_o)`, with the drawn slopes'
 //! variance. The ray cast of [`crate::Ensemble`] is the reference for low views.
 
+use crate::brdf::up;
 use crate::characteristic::Component;
 use crate::ensemble::{QUANTILES, Statistics};
+use crate::facet_density::{Cell, FacetDensity};
 use crate::quadrature::{gauss_legendre, midpoints, panels};
 use crate::scenario::Engagement;
 use crate::slope_density::{Point, Slopes, WindFrame};
@@ -28,6 +30,10 @@ const FINE: usize = 2;
 /// Where integrals are cut off, so many of Gauss's nodes on so many steps.
 const NODES: usize = 24;
 const PANEL: f64 = 14.0;
+/// Of a table of facets, to either side of 0: over how wide all slopes are beside the facets', but so many.
+const NODES_OVER_SIGMA: f64 = 12.0;
+const LEAST_NODES: usize = 36;
+const MOST_NODES: usize = 120;
 
 /// The slope density of a drawn sea and what it reflects.
 #[derive(Debug, Clone)]
@@ -72,6 +78,28 @@ impl Exact {
     /// The same sea under a wind from another azimuth, in degrees: nothing is tabulated again.
     pub(crate) fn turned(&self, degrees: f64) -> Self {
         Self { water: self.water.turned(degrees), wind: WindFrame::new(degrees.to_radians()), ..self.clone() }
+    }
+
+    /// The density of facets along the half vector of two directions, with the 1/4 of Eq. 56, on all waves together.
+    pub(crate) fn facets_along(&self, i: DVec3, o: DVec3) -> f64 {
+        let half = i + o;
+        match &self.slopes {
+            Some(slopes) => {
+                let slope = self.wind.to_wind(-half.truncate() / half.z);
+                Cell::new(slopes, &self.water, self.wind, slope).density
+            }
+            None => self.water.lobe.facets.density_along(half.normalize().into(), up()),
+        }
+    }
+
+    /// The same as a table; `None` where there are no waves.
+    pub(crate) fn facet_density(&self) -> Option<FacetDensity> {
+        let slopes = self.slopes.as_ref()?;
+        // Facets blur what the table is to resolve.
+        let facets = DVec2::from(self.water.variances.map(f64::sqrt));
+        let all = (facets * facets + slopes.sigma * slopes.sigma).powf(0.5);
+        let nodes = (NODES_OVER_SIGMA * all / facets).max_element() as usize;
+        Some(FacetDensity::new(slopes, &self.water, self.wind, nodes.clamp(LEAST_NODES, MOST_NODES)))
     }
 
     /// Means of f for every observer of an engagement.

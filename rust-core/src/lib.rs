@@ -58,6 +58,7 @@ pub mod ensemble;
 pub mod ensemble_lobe;
 mod error;
 pub mod exact;
+mod facet_density;
 mod facet_table;
 mod gaussian_fit;
 pub mod grid;

@@ -269,7 +269,6 @@ impl Parameters {
             scale: eq_56 / (std::f64::consts::TAU * sigma_u * sigma_c),
             c21,
             c03,
-            least_correction: 0.0,
             steep_cos,
             steep_gain,
             sigma_shadow: shadowing::sigma(wind.w10),

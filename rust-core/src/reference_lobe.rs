@@ -1,58 +1,75 @@
-//! The closed form of a sea whose drawn waves are facets as well: what a table is interpolated relative to.
-//!
-//! The mean over drawn waves is close to the lobe of facets with the slope variances of both together, and their ratio
-//! changes slowly with wind, footprint and directions, where the mean itself changes by orders of magnitude.
+//! What a table is interpolated relative to: the lobe of a sea's facets on all its drawn waves together, as if they lay
+//! on level water. The mean over drawn waves is close to it, and their ratio changes slowly with wind, footprint and
+//! directions, where the mean itself changes by orders of magnitude.
 
 use crate::brdf::{Facets, up};
 use crate::characteristic::variances;
+use crate::exact::Exact;
+use crate::facet_density::{self, FacetDensity};
 use crate::optics::Reflectance;
 use crate::shadowing::hidden;
-use crate::{Lobe, Water};
+use crate::surface::normal;
+use crate::{Error, Lobe, Water};
+use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
+use std::sync::Arc;
 
-/// What is left of the Gaussian where Eq. 78 would be less: quotients by this lobe stay finite.
-const LEAST_CORRECTION: f64 = 0.1;
+/// The logarithm of next to nothing, in float32.
+pub(crate) const NOTHING: f64 = -87.0;
 
-/// All waves as facets.
+/// What depends on the variances of the slopes alone.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reference {
-    /// The lobe, with the sea's reflectance; its share of whitecaps is that of the sea.
-    pub lobe: Lobe<f64>,
-    /// The same without a reflectance.
-    bare: Facets<f64>,
+pub(crate) struct Spreads {
+    /// Facets with the slope variances of all waves; their reflectance is 1.
+    all: Facets<f64>,
     /// Standard deviations of the drawn slopes, upwind and crosswind.
-    pub drawn: [f64; 2],
+    drawn: DVec2,
 }
 
-impl Reference {
+impl Spreads {
     /// Of a sea with drawn waves.
     pub fn new(water: &Water) -> Self {
         let [drawn_u, drawn_c, _] = variances(&water.waves());
         let [facets_u, facets_c] = water.variances;
-        let all = [facets_u + drawn_u, facets_c + drawn_c];
-        let mut facets = water.parameters.facets(&water.wind, water.ior, all);
-        // Drawn slopes are symmetric: third moments are the facets' alone.
-        let [u, c] = [facets_u / all[0], facets_c / all[1]].map(f64::sqrt);
-        facets.c21 *= u * c * c;
-        facets.c03 *= u * u * u;
-        facets.least_correction = LEAST_CORRECTION;
-        facets.bounded = false;
-        let bare = Facets { reflectance: Reflectance { normal: 1.0, ior2: 1.0, exact: false }, ..facets };
-        Self { lobe: Lobe { facets, ..water.lobe }, bare, drawn: [drawn_u.sqrt(), drawn_c.sqrt()] }
+        let all = water.parameters.facets(&water.wind, water.ior, [facets_u + drawn_u, facets_c + drawn_c]);
+        let reflectance = Reflectance { normal: 1.0, ior2: 1.0, exact: false };
+        let drawn = DVec2::new(drawn_u, drawn_c).powf(0.5);
+        Self { all: Facets { reflectance, bounded: false, ..all }, drawn }
     }
 
     /// The same sea under a wind from another azimuth, in degrees.
     pub fn turned(mut self, degrees: f64) -> Self {
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        for facets in [&mut self.lobe.facets, &mut self.bare] {
-            (facets.sin_wind, facets.cos_wind) = (sin, cos);
-        }
+        (self.all.sin_wind, self.all.cos_wind) = degrees.to_radians().sin_cos();
         self
+    }
+
+    fn to_wind(self, v: DVec2) -> DVec2 {
+        let wind = DVec2::new(self.all.cos_wind, self.all.sin_wind);
+        DVec2::new(v.dot(wind), v.dot(wind.perp()))
+    }
+
+    /// Smith's term for a direction above the horizon: how much of what it sees drawn waves hide.
+    pub fn hidden(&self, v: [f64; 3]) -> f64 {
+        let cos = v[2].max(1e-9);
+        hidden(cos, SQRT_2 * (self.to_wind(DVec2::new(v[0], v[1])) * self.drawn).length()) / cos
+    }
+
+    /// Smith's share of what drawn waves leave visible to an observer, of what the source hits.
+    pub fn share(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        let [hidden_i, hidden_o] = [i, o].map(|v| self.hidden(v));
+        (1.0 + hidden_i) / (1.0 + hidden_i + hidden_o)
+    }
+
+    /// `G/(cos theta_i cos theta_r)` on level water.
+    pub fn shadowing(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        if i[2] <= 0.0 || o[2] <= 0.0 {
+            return 0.0;
+        }
+        self.all.shadowed_reflectance(i, o, up()) / (i[2] * o[2])
     }
 
     /// Logarithm of the mean square of f over its squared mean, if facets' and drawn waves' slopes are Gaussian.
     pub fn ln_square(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
-        let f = &self.bare;
         let [x, y, z] = [0, 1, 2].map(|k| i[k] + o[k]);
         let axis = |h: f64, all: f64, drawn: f64| {
             // Variances of all slopes, of the facets' alone, and as wide as f squared is once drawn.
@@ -61,32 +78,74 @@ impl Reference {
             let tilt = h.atan2(z);
             (all / (facets * twice).sqrt()).ln() + tilt * tilt * (1.0 / all - 1.0 / twice)
         };
-        axis(x * f.cos_wind + y * f.sin_wind, f.sigma_u, self.drawn[0])
-            + axis(y * f.cos_wind - x * f.sin_wind, f.sigma_c, self.drawn[1])
+        let h = self.to_wind(DVec2::new(x, y));
+        axis(h.x, self.all.sigma_u, self.drawn.x) + axis(h.y, self.all.sigma_c, self.drawn.y)
+    }
+}
+
+/// The lobe of a sea.
+#[derive(Debug, Clone)]
+pub(crate) struct Reference {
+    pub spreads: Spreads,
+    /// `None` where there are no waves: then the facets' own.
+    density: Option<Arc<FacetDensity>>,
+}
+
+impl Reference {
+    /// Of a sea with drawn waves; refused as by [`Exact::new`].
+    pub fn new(water: &Water) -> Result<Self, Error> {
+        let density = Exact::new(water)?.facet_density().map(Arc::new);
+        Ok(Self { spreads: Spreads::new(water), density })
     }
 
-    /// f over rho of level water, 1/sr, for unit vectors to source and observer.
+    /// Draws directions roughly as the lobe reflects, with the sea's own reflectance and whitecaps.
+    pub fn sampler(&self, water: &Water) -> Lobe<f64> {
+        let reflectance = water.lobe.facets.reflectance;
+        Lobe { facets: Facets { reflectance, ..self.spreads.all }, ..water.lobe }
+    }
+
+    /// The same sea under a wind from another azimuth, in degrees.
+    pub fn turned(&self, degrees: f64) -> Self {
+        Self { spreads: self.spreads.turned(degrees), density: self.density.clone() }
+    }
+
+    /// The density of facets along the half vector of two directions, with the 1/4 of Eq. 56.
+    pub fn density(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        let half = DVec3::from(i) + DVec3::from(o);
+        match &self.density {
+            Some(density) => density.at(self.spreads.to_wind(-half.truncate() / half.z)).density,
+            None => self.spreads.all.density_along(half.normalize().into(), up()),
+        }
+    }
+
+    /// Logarithms of the density over the half vector's tilt angles upwind and crosswind, 0 in the middle, so many nodes on a
+    /// side, row by row of those upwind; and the steps between them, radians.
+    pub fn ln_densities(&self, rows: usize) -> (Vec<f32>, [f64; 2]) {
+        let all = &self.spreads.all;
+        let middle = 0.5 * (rows - 1) as f64;
+        let steps = [all.sigma_u, all.sigma_c].map(|sigma| facet_density::end(sigma) / middle);
+        let at = |n: usize| {
+            let [u, c] = [(n / rows) as f64, (n % rows) as f64].map(|k| k - middle);
+            let slope = DVec2::new((u * steps[0]).tan(), (c * steps[1]).tan());
+            let density = match &self.density {
+                Some(density) => density.at(slope).density,
+                None => {
+                    let wind = DVec2::new(all.cos_wind, all.sin_wind);
+                    all.density_along(normal((slope.x * wind + slope.y * wind.perp()).into()), up())
+                }
+            };
+            density.ln().max(NOTHING) as f32
+        };
+        ((0..rows * rows).map(at).collect(), steps)
+    }
+
+    /// f of the facets over rho on level water, 1/sr.
+    pub fn eval_level(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        self.density(i, o) * self.spreads.shadowing(i, o)
+    }
+
+    /// The same less what drawn waves hide.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
-        self.bare.eval(i, o, up())
-    }
-
-    /// Smith's term for a direction above the horizon: how much of what it sees drawn waves hide.
-    pub fn hidden(&self, v: [f64; 3]) -> f64 {
-        let f = &self.bare;
-        let [u, c] = [v[0] * f.cos_wind + v[1] * f.sin_wind, v[1] * f.cos_wind - v[0] * f.sin_wind];
-        let cos = v[2].max(1e-9);
-        hidden(cos, SQRT_2 * (u * self.drawn[0]).hypot(c * self.drawn[1])) / cos
-    }
-
-    /// What drawn waves leave visible to an observer, of what the source hits.
-    pub fn visible(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
-        let [i, o] = [i, o].map(|v| self.hidden(v));
-        (1.0 + i) / (1.0 + i + o)
-    }
-
-    /// f over rho in the plane of incidence that is x and z's, at an angle theta_r, with what is hidden.
-    pub fn in_plane(&self, source: [f64; 3], theta: f64) -> f64 {
-        let o = [theta.sin(), 0.0, theta.cos()];
-        self.eval(source, o) * self.visible(source, o)
+        self.eval_level(i, o) * self.spreads.share(i, o)
     }
 }

@@ -1,8 +1,9 @@
 //! Tables of the empirical model (section 9): what [`crate::empirical`] finds, over wind, footprint, angle of incidence
 //! and the wind's azimuth; how they are made and how they are looked into.
 //!
-//! Between nodes the mean in the plane is interpolated as the logarithm of its ratio to [`Reference`], the closed form of
-//! the same sea, which changes slowly; the spread as the logarithm of the mean of f squared over the square of the mean.
+//! Between nodes the mean in the plane is interpolated as the logarithm of its ratio to what the same facets would reflect
+//! on level water ([`Node::approximate`]), which changes slowly; the spread as the logarithm of the mean of f squared
+//! over the square of the mean, beside that of Gaussian slopes.
 //! Cubics with parabolic slopes at the nodes (Catmull and Rom's on even grids) do it along every axis: smooth, and
 //! positive whatever is done.
 //!
@@ -34,13 +35,15 @@
 use crate::empirical::{Full, Moments, Node};
 use crate::error::refuse;
 use crate::parameters::MOST_INSTANCES;
-use crate::reference_lobe::Reference;
+use crate::reference_lobe::Spreads;
 use crate::vocabulary::{Builder, Value};
 use crate::{Error, Parameters, Surface, Water, Wind};
 use rayon::prelude::*;
 
 /// Numbers of a node beside those in the plane: sigma, u_sigma, delta, u_delta (radians) and the share of fits.
 pub(crate) const WIDTHS: usize = 5;
+/// Numbers of a node for every angle theta_r.
+pub(crate) const IN_PLANE: usize = 4;
 /// What a table is made with, unless told.
 pub const INSTANCES: u64 = 8192;
 /// More numbers than any table needs.
@@ -49,8 +52,8 @@ const MOST: usize = 1 << 28;
 const DIGITS: u32 = 12;
 /// How much nodes at other incidences are looked into along with the lobe: a power of cos theta_r.
 const SHIFT: i32 = 2;
-/// Ratios to the closed form are at least this.
-const LEAST_RATIO: f64 = 1e-3;
+/// Ratios to what level water would reflect are between these.
+const RATIOS: [f64; 2] = [1e-3, 1e3];
 
 /// Where a table has its nodes, each list rising.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,7 +79,7 @@ impl Default for Grid {
             footprint: geometric(0.02, 1.0, 6),
             incidence: [0, 10, 20, 30, 40, 50, 58, 65, 71, 76, 81, 85].map(f64::from).into(),
             wind_azimuth: (0..=8).map(|k| 22.5 * f64::from(k)).collect(),
-            theta_r: (-22..=22).map(|k| 4.0 * f64::from(k)).collect(),
+            theta_r: (-22..=20).map(|k| 4.0 * f64::from(k)).chain([82.0, 84.0, 86.0, 88.0]).collect(),
         }
     }
 }
@@ -163,7 +166,7 @@ impl Plan {
 
     /// How many numbers a row has.
     pub fn row_len(&self) -> usize {
-        self.grid.wind_azimuth.len() * (WIDTHS + 3 * self.grid.theta_r.len())
+        self.grid.wind_azimuth.len() * (WIDTHS + IN_PLANE * self.grid.theta_r.len())
     }
 
     fn sea(&self, friction_velocity: f64, footprint: f64) -> Result<Water, Error> {
@@ -172,7 +175,8 @@ impl Plan {
         Parameters { wind, footprint, surface, wind_direction: 0.0, time: 0.0, ..self.parameters }.configure()
     }
 
-    /// The numbers of a row: for every azimuth the [`WIDTHS`], and mean, standard deviation and whitecaps of all theta_r.
+    /// The numbers of a row: for every azimuth the [`WIDTHS`], and mean, standard deviation, whitecaps and what
+    /// approximates the mean of all theta_r.
     pub fn row(&self, row: usize) -> Result<Vec<f32>, Error> {
         let [_, footprints, incidences, ..] = self.grid.shape();
         let g = &self.grid;
@@ -191,6 +195,7 @@ impl Plan {
             numbers.extend(node.in_plane.iter().map(|m| m.facets));
             numbers.extend(node.in_plane.iter().map(|m| (m.facets2 - m.facets * m.facets).max(0.0).sqrt()));
             numbers.extend(node.in_plane.iter().map(|m| m.whitecaps));
+            numbers.extend(&node.approximate);
         }
         Ok(numbers.into_iter().map(rounded).collect())
     }
@@ -207,7 +212,7 @@ impl Plan {
             in_plane: std::array::from_fn(|_| vec![]),
             widths: std::array::from_fn(|_| vec![]),
         };
-        for node in rows.iter().flat_map(|row| row.chunks(WIDTHS + 3 * thetas)) {
+        for node in rows.iter().flat_map(|row| row.chunks(WIDTHS + IN_PLANE * thetas)) {
             let (widths, in_plane) = node.split_at(WIDTHS);
             table.widths.iter_mut().zip(widths).for_each(|(all, x)| all.push(*x));
             table.in_plane.iter_mut().zip(in_plane.chunks(thetas)).for_each(|(all, xs)| all.extend(xs));
@@ -239,9 +244,9 @@ pub struct Table {
     pub parameters: Parameters,
     /// Where its nodes are.
     pub grid: Grid,
-    /// Mean and standard deviation of the facets' f over rho, 1/sr, and the share of whitecaps, by friction velocity,
-    /// footprint, incidence, azimuth and theta_r.
-    pub in_plane: [Vec<f32>; 3],
+    /// Mean and standard deviation of the facets' f over rho, 1/sr, the share of whitecaps, and what approximates the mean
+    /// ([`Node::approximate`]), by friction velocity, footprint, incidence, azimuth and theta_r.
+    pub in_plane: [Vec<f32>; IN_PLANE],
     /// sigma(0), u_sigma, delta, u_delta, radians, and the share of surfaces whose lobe could be fitted, by friction
     /// velocity, footprint, incidence and azimuth.
     pub widths: [Vec<f32>; WIDTHS],
@@ -253,8 +258,8 @@ pub(crate) struct Slice {
     incidence: Vec<f64>,
     azimuth: Vec<f64>,
     theta: Vec<f64>,
-    /// Logarithm of the mean over the closed form, fourth root of the share of whitecaps, and logarithm of the mean
-    /// square over the squared mean, over that of the closed form.
+    /// Logarithm of the mean over what approximates it, fourth root of the share of whitecaps, and logarithm of the mean
+    /// square over the squared mean, less that of Gaussian slopes.
     in_plane: Vec<[f64; 3]>,
     /// sigma, u_sigma, delta, u_delta.
     widths: Vec<[f64; 4]>,
@@ -293,14 +298,24 @@ impl Table {
     pub fn node(&self, [w, d, incidence, azimuth]: [usize; 4]) -> Node {
         let [_, footprints, incidences, azimuths, thetas] = self.grid.shape();
         let at = ((w * footprints + d) * incidences + incidence) * azimuths + azimuth;
-        let [mean, std, whitecaps] = self.in_plane.each_ref().map(|all| &all[at * thetas..(at + 1) * thetas]);
+        let [mean, std, whitecaps, approximate] =
+            self.in_plane.each_ref().map(|all| &all[at * thetas..(at + 1) * thetas]);
         let moments = |k: usize| {
             let facets = f64::from(mean[k]);
             let facets2 = facets * facets + f64::from(std[k]).powi(2);
             Moments { facets, facets2, whitecaps: f64::from(whitecaps[k]) }
         };
         let [sigma, u_sigma, delta, u_delta, fitted] = self.widths.each_ref().map(|all| f64::from(all[at]));
-        Node { in_plane: (0..thetas).map(moments).collect(), sigma, u_sigma, delta, u_delta, fitted }
+        let approximate = approximate.iter().map(|x| f64::from(*x)).collect();
+        Node {
+            in_plane: (0..thetas).map(moments).collect(),
+            approximate,
+            sigma,
+            u_sigma,
+            delta,
+            u_delta,
+            fitted,
+        }
     }
 
     /// Refuses a sea that the table does not know: other switches, or a wind or a footprint outside of its grid.
@@ -343,7 +358,7 @@ impl Table {
             for (b, wb) in weights(&ln(&g.footprint), d.ln()) {
                 if wa * wb != 0.0 {
                     let sea = plan.sea(g.friction_velocity[a], g.footprint[b])?;
-                    parts.push((wa * wb, [a, b], Reference::new(&sea)));
+                    parts.push((wa * wb, [a, b], Spreads::new(&sea)));
                 }
             }
         }
@@ -357,18 +372,20 @@ impl Table {
                 let (sin, cos) = incidence[i].sin_cos();
                 let mut in_plane = vec![[0.0; 3]; thetas];
                 let mut widths = [0.0; 4];
-                for (weight, [w, d], reference) in &parts {
-                    let reference = reference.turned(g.wind_azimuth[a]);
+                for (weight, [w, d], spreads) in &parts {
+                    let spreads = spreads.turned(g.wind_azimuth[a]);
                     let node = self.node([*w, *d, i, a]);
-                    for ((sums, m), theta) in in_plane.iter_mut().zip(&node.in_plane).zip(&theta) {
-                        let source = [-sin, 0.0, cos];
-                        let closed = reference.in_plane(source, *theta);
-                        let ratio = if closed > 0.0 { m.facets / closed } else { 0.0 };
+                    for (k, sums) in in_plane.iter_mut().enumerate() {
+                        let (m, near) = (&node.in_plane[k], node.approximate[k]);
+                        // Where both have faded the ratio is not known, and does not matter.
+                        let ratio =
+                            if near > 0.0 { (m.facets / near).clamp(RATIOS[0], RATIOS[1]) } else { 1.0 };
                         let square = if m.facets > 0.0 { m.facets2 / (m.facets * m.facets) } else { 1.0 };
-                        sums[0] += weight * ratio.max(LEAST_RATIO).ln();
+                        let gaussian =
+                            spreads.ln_square([-sin, 0.0, cos], [theta[k].sin(), 0.0, theta[k].cos()]);
+                        sums[0] += weight * ratio.ln();
                         sums[1] += weight * m.whitecaps.max(0.0).sqrt().sqrt();
-                        let spread = reference.ln_square(source, [theta.sin(), 0.0, theta.cos()]);
-                        sums[2] += weight * (square.max(1.0).ln() - spread);
+                        sums[2] += weight * (square.max(1.0).ln() - gaussian);
                     }
                     let fitted = [node.sigma, node.u_sigma, node.delta, node.u_delta];
                     widths.iter_mut().zip(fitted).for_each(|(sum, x)| *sum += weight * x);
@@ -392,8 +409,8 @@ impl Slice {
         [&self.incidence, &self.theta].map(|axis| [axis[0], axis[axis.len() - 1]])
     }
 
-    /// For an incidence and an azimuth of the wind, radians: ratios to the closed form, shares of whitecaps and logarithms
-    /// of the mean square over the squared mean, over that of the closed form, at angles theta_r; and sigma, u_sigma,
+    /// For an incidence and an azimuth of the wind, radians: ratios to what approximates the mean, shares of whitecaps
+    /// and logarithms of the mean square over the squared mean, less that of Gaussian slopes, at angles theta_r; and sigma, u_sigma,
     /// delta and u_delta.
     pub fn row(&self, incidence: f64, azimuth: f64, thetas: &[f64]) -> (Vec<[f64; 3]>, [f64; 4]) {
         let (count, azimuths) = (self.theta.len(), self.azimuth.len());
@@ -421,7 +438,7 @@ impl Slice {
             }
         }
         for [ratio, whitecaps, _] in &mut row {
-            *ratio = ratio.max(LEAST_RATIO.ln()).exp();
+            *ratio = ratio.exp().clamp(RATIOS[0], RATIOS[1]);
             *whitecaps = whitecaps.max(0.0).powi(4).min(1.0);
         }
         let [sigma, u_sigma, delta, u_delta] = widths;

@@ -5,7 +5,7 @@
 //! | array | type | over |
 //! | --- | --- | --- |
 //! | `friction_velocity` (cm/s), `footprint` (m), `incidence`, `wind_azimuth`, `theta_r` (degrees) | float64 | themselves: the grid |
-//! | `mean`, `std` (f of the facets over rho, 1/sr), `whitecaps` (share) | float32 | all five, in this order |
+//! | `mean`, `std`, `approximate` (f of the facets over rho, 1/sr), `whitecaps` (share) | float32 | all five, in this order |
 //! | `sigma`, `u_sigma`, `delta`, `u_delta` (radians), `fitted` (share) | float32 | the first four |
 //! | `metadata` | bytes | JSON: `json.loads(t["metadata"].tobytes())` |
 //!
@@ -29,7 +29,7 @@ const FORMAT: &str = "prob-water empirical table";
 const FORMAT_VERSION: u64 = 1;
 /// Longer metadata, and longer axes, are refused unread.
 const LONGEST: u64 = 1 << 20;
-const IN_PLANE: [&str; 3] = ["mean", "std", "whitecaps"];
+const IN_PLANE: [&str; 4] = ["mean", "std", "whitecaps", "approximate"];
 const WIDTHS: [&str; 5] = ["sigma", "u_sigma", "delta", "u_delta", "fitted"];
 
 /// The table that comes with the crate: `cargo run --release -p prob-water-cli -- table build` makes it anew.
@@ -107,6 +107,7 @@ impl Table {
                 "mean": "1/sr, facets' f over rho, a whitecap counting as 0: mean over instances",
                 "std": "1/sr, of the same: standard deviation over instances",
                 "whitecaps": "share of instances in which a whitecap is seen",
+                "approximate": "1/sr, near the mean: what the facets would reflect on level water",
                 "sigma": "radians, sigma(0) of Eq. 89",
                 "u_sigma": "radians, standard deviation over instances",
                 "delta": "radians, of Eq. 90",
@@ -183,11 +184,11 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
             None => Ok(values),
         }
     };
-    let [mean, std, whitecaps] = IN_PLANE.each_ref().map(|name| all(name, &shape));
+    let [mean, std, whitecaps, approximate] = IN_PLANE.each_ref().map(|name| all(name, &shape));
     let [sigma, u_sigma, delta, u_delta, fitted] = WIDTHS.each_ref().map(|name| all(name, &shape[..4]));
     Ok(Table {
         parameters: parameters.and_then(|p| p.configure().map(|_| p)).map_err(|e| e.to_string())?,
-        in_plane: [mean?, std?, whitecaps?],
+        in_plane: [mean?, std?, whitecaps?, approximate?],
         widths: [sigma?, u_sigma?, delta?, u_delta?, fitted?],
         grid,
     })

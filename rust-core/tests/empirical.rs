@@ -72,7 +72,8 @@ fn widths() {
                 let found = node.sigma.to_degrees();
                 println!("w* {w} wind {azimuth} incidence {incidence}: {found:.2} deg, expected {expected}");
                 // Eq. 89: over the cosine of the incidence it stays nearly the same.
-                assert!((found / expected - 1.0).abs() < if incidence == 60.0 { 0.15 } else { 0.03 });
+                // The independent values are those at 30 degrees.
+                assert!((found / expected - 1.0).abs() < if incidence == 30.0 { 0.02 } else { 0.05 });
                 assert!(node.fitted > 0.97 && node.u_sigma > 0.0 && node.u_delta > node.u_sigma);
             }
         }
@@ -114,7 +115,10 @@ fn nodes_follow_the_ray_cast() {
                 spread / wanted.std,
             );
             assert!(off.abs() < 4.0, "{off}");
-            assert!((spread - wanted.std).abs() < 0.12 * wanted.std + 4.0 * wanted.sem);
+            // The spread of a far flank takes more draws than there are.
+            if node.in_plane[k].facets > 0.05 * peak {
+                assert!((spread / wanted.std - 1.0).abs() < 0.1);
+            }
             squares += off * off;
             count += 1.0;
         }
@@ -122,36 +126,28 @@ fn nodes_follow_the_ray_cast() {
     }
 }
 
-/// A sea of three components has no exact statistics: draws alone give the same as the ray cast.
+/// A sea of three components has no exact statistics, and no table.
 #[test]
-fn few_components_are_drawn() {
-    let water = with(&sea(24.0, 20.0, 20_000), |p| p.components = 3);
-    let thetas = radians([0.0, 20.0, 40.0, 70.0].into_iter());
-    let node = full(&water).node(0.7, &thetas).unwrap();
-    let directions: Vec<_> = thetas.iter().map(|t| planes(0.7).in_plane(*t)).collect();
-    let engagement = Engagement::far(0.7f64.to_degrees(), 10e3, &directions, 100e3).unwrap();
-    let cast = with(&water, |p| p.seed = 3);
-    let samples = Ensemble::new(&cast).sample(&[engagement], &|_| ()).unwrap();
-    for (k, o) in directions.iter().enumerate() {
-        let [mean, _] = brdf(&water, &node.in_plane[k], planes(0.7).source(), *o);
-        let wanted = samples.statistics(0, k, &[]);
-        assert!((mean - wanted.mean).abs() < 4.5 * wanted.sem, "{mean} {} {}", wanted.mean, wanted.sem);
-    }
+fn few_components_are_refused() {
+    let water = with(&sea(24.0, 20.0, 100), |p| p.components = 3);
+    assert_eq!(Full::new(&water).unwrap_err().parameters(), ["components"]);
+    assert_eq!(Plan::new(&water.parameters, &Grid::default()).unwrap_err().parameters(), ["components"]);
 }
 
-/// What the empirical model is off the full one, largest of so many points at random: in the plane where that is above 1 %
-/// of its peak, and across it to 1.5 sigma within 15 degrees of the specular direction.
+/// What the empirical model is off the full one at points at random: in the plane where that is above 1 % of its peak, the
+/// largest of each point; and across it to 1.5 sigma within 15 degrees of the specular direction.
+#[derive(Default)]
 struct HeldOut {
     in_plane: Vec<f64>,
-    /// By [`Across`], of everything across the plane; and of where the peak of the lobe is near, above 10 % of it.
-    report: Vec<f64>,
-    slopes: Vec<f64>,
+    /// Wherever that is, and where f is above 1 % of its peak.
+    report: [Vec<f64>; 2],
+    slopes: [Vec<f64>; 2],
 }
 
 fn held_out(points: usize, seed: u64) -> HeldOut {
     let table = Table::standard();
     let mut rng = StdRng::seed_from_u64(seed);
-    let mut found = HeldOut { in_plane: vec![], report: vec![], slopes: vec![] };
+    let mut found = HeldOut::default();
     let geometric = |t: f64, [low, high]: [f64; 2]| low * (high / low as f64).powf(t);
     for _ in 0..points {
         let w = geometric(rng.random(), [2.0, 62.9]);
@@ -194,7 +190,13 @@ fn held_out(points: usize, seed: u64) -> HeldOut {
         let moments = full.moments(&planes, &around).unwrap();
         for (lobe, errors) in lobes.iter().zip([&mut found.report, &mut found.slopes]) {
             let all = around.iter().zip(&moments);
-            errors.extend(all.filter(|(_, m)| m.facets > 0.0).map(|(o, m)| off(lobe, *o, m)));
+            for (o, m) in all.filter(|(_, m)| m.facets > 0.0) {
+                let error = off(lobe, *o, m);
+                errors[0].push(error);
+                if brdf(&water, m, source, *o)[0] > 0.01 * peak {
+                    errors[1].push(error);
+                }
+            }
         }
         println!(
             "w* {w:6.2} D {footprint:.3} incidence {incidence:4.1} wind {azimuth:5.1} wavelength {wavelength:5.2}: {:+.2} %",
@@ -215,10 +217,13 @@ fn quantile(errors: &[f64], level: f64) -> f64 {
 }
 
 fn show(found: &HeldOut) {
+    let [report, slopes] = [&found.report, &found.slopes];
     for (name, errors, limit) in [
         ("in plane, worst of a point", &found.in_plane, 0.05),
-        ("across it, report's", &found.report, 0.1),
-        ("across it, slopes", &found.slopes, 0.1),
+        ("across it, report", &report[0], 0.1),
+        ("  above 1 % of the peak", &report[1], 0.1),
+        ("across it, slopes", &slopes[0], 0.1),
+        ("  above 1 % of the peak", &slopes[1], 0.1),
     ] {
         println!(
             "{name}: {} within {:.0} %: {:.1} %; median {:.2} %, 95 of 100 {:.2} %, largest {:.2} %",
@@ -238,7 +243,7 @@ fn between_nodes() {
     let found = held_out(16, 1);
     show(&found);
     assert!(quantile(&found.in_plane, 1.0) < 0.05);
-    assert!(share(&found.slopes, 0.1) > 0.9);
+    assert!(share(&found.slopes[0], 0.1) > 0.95 && share(&found.slopes[1], 0.1) > 0.98);
 }
 
 #[test]
@@ -247,7 +252,7 @@ fn between_many_nodes() {
     let found = held_out(240, 2);
     show(&found);
     assert!(quantile(&found.in_plane, 1.0) < 0.05);
-    assert!(share(&found.slopes, 0.1) > 0.9);
+    assert!(share(&found.slopes[0], 0.1) > 0.95 && share(&found.slopes[1], 0.1) > 0.98);
 }
 
 /// Across the plane through the specular direction, against the full model to 1.5 sigma: Eq. 91 within 25 % of its relative
@@ -350,7 +355,7 @@ fn evaluation_holds_everywhere() {
                     && estimate.std.is_finite()
                     && estimate.std >= 0.0
             );
-            assert_eq!(f > 0.0, i[2] > 0.0 && o[2] > 0.0);
+            assert!(f == 0.0 || (i[2] > 0.0 && o[2] > 0.0));
             assert!((estimate.mean - f).abs() <= 1e-9 * f);
             peak = peak.max(f);
             assert!((single - f).abs() < 2e-4 * f + 1e-6 * peak, "{single} {f} {i:?} {o:?}");
