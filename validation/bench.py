@@ -1,4 +1,5 @@
-"""Speed: prob_water, Mitsuba's own BSDFs, their peer `ocean_legacy`, and the Rust core, its engagements included.
+"""Speed: prob_water, Mitsuba's own BSDFs, their peer `ocean_legacy`, and the Rust core, its engagements and its
+empirical model included.
 
 Run by `cargo xtask bench [--quick] [--rounds N] [--output FILE]`. The traced BSDFs are timed by
 bench_throughput.py in two processes, one per Python environment, that take turns; the table shows the best
@@ -16,6 +17,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import bench_empirical
 import bench_engagements
 
 ROOT = Path(__file__).parents[1]
@@ -162,6 +164,7 @@ def show(report: dict[str, Any]) -> None:
         cell = f"{1e6 / best:.0f} ({1e6 / median:.0f})" if row["name"] == "configure" \
             else f"{best / 1e6:.2f} ({median / 1e6:.2f})"
         print(f"{row['name'] + ', ' + row['precision']:36}{cell:>15}")
+    bench_empirical.show(report["empirical"])
     bench_engagements.show(report["engagements"])
 
 
@@ -178,7 +181,8 @@ def main() -> None:
         rounds, passes, pairs, repeats = 1, 3, 100_000, 1
 
     report = {"commit": commit(), "machine": machine(), "traced": traced(rounds, passes, pairs),
-              "scalar": core("throughput", repeats), "engagements": core("engagements", repeats)}
+              "scalar": core("throughput", repeats), "empirical": core("empirical", repeats),
+              "engagements": core("engagements", repeats)}
     report["ratios"] = ratios(report["traced"]["million_per_s"])
     show(report)
     arguments.output.parent.mkdir(parents=True, exist_ok=True)

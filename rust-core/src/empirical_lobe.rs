@@ -5,7 +5,30 @@
 //! no angle is computed but the one across the plane.
 //!
 //! Beyond the largest angle of incidence in the table it is what it is there, and beyond its angles theta_r the ratio to
-//! the closed form is: [`Estimate::outside`] says so.
+//! what level water would reflect is: [`Estimate::outside`] says so.
+//!
+//! ```
+//! use prob_water::{EmpiricalLobe, Parameters, Surface, Table, Wind};
+//!
+//! # fn main() -> Result<(), prob_water::Error> {
+//! let water = Parameters {
+//!     wind: Wind::FrictionVelocity(8.0),
+//!     wind_direction: 30.0,
+//!     surface: Surface::Empirical,
+//!     footprint: 0.15,
+//!     ..Parameters::default()
+//! }
+//! .configure()?;
+//! let lobe = EmpiricalLobe::new(&water, Table::standard())?;
+//! let [i, o] = [[-0.5, 0.0, 0.75f64.sqrt()], [0.5, 0.0, 0.75f64.sqrt()]];
+//! let estimate = lobe.estimate(i, o);
+//! println!("{} +- {} 1/sr", estimate.mean, estimate.std);
+//! assert!(!estimate.outside);
+//! let f: f32 = lobe.eval(i.map(|x| x as f32), o.map(|x| x as f32));
+//! assert!((f64::from(f) / estimate.mean - 1.0).abs() < 1e-4);
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::brdf::Parts;
 use crate::empirical::Moments;
