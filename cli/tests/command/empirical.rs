@@ -58,6 +58,19 @@ fn brdf_refusals() {
     }
 }
 
+#[test]
+fn a_truncated_table() {
+    let tables = Tables::new();
+    let whole = tables.build("own.npz", SMALL);
+    let path = tables.path("own.npz");
+    fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    let [brdf, show] = [format!("brdf {SEA} --table"), "table show".into()];
+    for arguments in [brdf, show, scenario(&tables, SCENARIO, "--table")] {
+        let message = refuse(&format!("{arguments} {}", path.display()), ROWS);
+        assert!(message.contains("own.npz: is no npz file, or a truncated one"), "{message}");
+    }
+}
+
 /// A render's metadata, and a file with a table beside it.
 #[test]
 fn the_sea_of_a_file() {
