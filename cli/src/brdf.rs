@@ -3,12 +3,13 @@
 use crate::input::{self, Columns, STRIDE};
 use crate::progress::Progress;
 use crate::table::{self, Cell, Table};
-use crate::{Outcome, parameters};
+use crate::{Outcome, empirical_table, parameters};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use csv::ByteRecord;
 use prob_water::batch::Rows;
 use prob_water::scenario::FARTHEST;
 use prob_water::{EnsembleLobe, Error, InstanceLobe, Surface};
+use rayon::prelude::*;
 use std::path::PathBuf;
 
 /// The subcommand's flags.
@@ -27,14 +28,22 @@ pub fn command() -> Command {
                      - is standard input [default: -]",
                 ),
         )
+        .arg(empirical_table::flag())
         .args(table::flags())
         .args(parameters::flags_and_from(Surface::Flat))
 }
 
 /// Checks every row, then writes them all with their `f`.
 pub fn run(matches: &ArgMatches) -> Outcome {
-    let water = parameters::water_on(&[Surface::Flat, Surface::Instance, Surface::Ensemble], matches)?;
-    let drawn = water.parameters.surface == Surface::Instance;
+    let surfaces = [Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
+    let (water, of_file) = parameters::water_and_table(&surfaces, matches)?;
+    let surface = water.parameters.surface;
+    let by_table = surface == Surface::Empirical;
+    let table = empirical_table::given(matches);
+    if table.is_some() && !by_table {
+        return Err(empirical_table::MEANINGLESS.to_owned().into());
+    }
+    let drawn = surface == Surface::Instance;
     let columns = if drawn { &PLACES } else { &COLUMNS };
     let input = input::read(matches.get_one::<PathBuf>("input").expect("has a default"))?;
     let half = input.len() as u64;
@@ -43,7 +52,12 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     let directions = Directions::parse(columns, &input, |byte| progress.at(byte))?;
     let mut f = vec![0.0; directions.vectors[0].len()];
     let rows = directions.rows(drawn)?;
-    match water.parameters.surface {
+    if directions.with_normals() && matches!(surface, Surface::Ensemble | Surface::Empirical) {
+        let shown = water.parameters.get("surface").map_or(String::new(), |name| name.to_string());
+        return Err(format!("normals have no meaning with surface = {shown}").into());
+    }
+    let mut estimates = Vec::new();
+    match surface {
         Surface::Flat => rows.eval(&water.lobe, &mut f)?,
         Surface::Instance => {
             let lobe = InstanceLobe::new(&water);
@@ -55,15 +69,19 @@ pub fn run(matches: &ArgMatches) -> Outcome {
             })?;
         }
         Surface::Ensemble => {
-            if directions.with_normals() {
-                return Err("normals have no meaning with surface = ensemble".to_owned().into());
-            }
             let lobe = EnsembleLobe::new(&water)?;
             rows.each(&mut f, |_, i, o, _| lobe.eval(i, o))?;
         }
+        Surface::Empirical => {
+            let lobe = empirical_table::lobe(&water, table.or(of_file.as_deref()))?;
+            let [source, observer, _] = &directions.vectors;
+            estimates = source.par_iter().zip(observer).map(|(i, o)| lobe.estimate(*i, *o)).collect();
+            f = estimates.iter().map(|estimate| estimate.mean).collect();
+        }
     }
 
-    let names = directions.columns.iter().map(|c| columns.known[*c]).chain(["f"]);
+    let more: &[&str] = if by_table { &["f", "u", "outside"] } else { &["f"] };
+    let names = directions.columns.iter().map(|c| columns.known[*c]).chain(more.iter().copied());
     let mut out = Table::new(matches, names)?;
     let mut reader = input::reader(&input);
     let mut record = ByteRecord::new();
@@ -73,7 +91,9 @@ pub fn run(matches: &ArgMatches) -> Outcome {
             let text = str::from_utf8(field).expect("the text of a number");
             Cell::Given(text, directions.vectors[column / 3][row][column % 3])
         });
-        out.row(&given.chain([Cell::Number(*f)]).collect::<Vec<_>>())?;
+        let known = estimates.get(row).map(|e| [Cell::Number(e.std), Cell::Count(e.outside.into())]);
+        let cells = given.chain([Cell::Number(*f)]).chain(known.into_iter().flatten());
+        out.row(&cells.collect::<Vec<_>>())?;
         if row % STRIDE == 0 {
             progress.at(half + reader.position().byte());
         }

@@ -2,7 +2,7 @@
 
 use crate::{Outcome, Stop};
 use std::fs::{self, File, Permissions};
-use std::io::{self, ErrorKind, Stdout, Write};
+use std::io::{self, ErrorKind, IsTerminal, Stdout, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use tempfile::NamedTempFile;
@@ -27,6 +27,8 @@ enum Out {
 
 /// The files in the making, which Ctrl-C removes.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// What Ctrl-C says, if anything.
+static LAST_WORDS: Mutex<String> = Mutex::new(String::new());
 
 impl Destination {
     /// Standard output where no path is given.
@@ -83,6 +85,28 @@ pub fn keep(destinations: Vec<Destination>) -> Outcome {
     Ok(())
 }
 
+/// Lets Ctrl-C say something before it ends the run.
+pub fn on_interrupt(last_words: String) {
+    *LAST_WORDS.lock().unwrap() = last_words;
+    handle_interrupts();
+}
+
+/// The first call holds for good.
+fn handle_interrupts() {
+    let _ = ctrlc::set_handler(|| {
+        for path in TEMPORARIES.lock().unwrap().iter() {
+            let _ = fs::remove_file(path);
+        }
+        let words = LAST_WORDS.lock().unwrap();
+        if !words.is_empty() {
+            // Below the bar, which has no end of line.
+            let start = if io::stderr().is_terminal() { "\n" } else { "" };
+            eprintln!("{start}prob-water: {words}");
+        }
+        std::process::exit(130);
+    });
+}
+
 /// Through a link to the file itself, as an ordinary write would.
 pub fn resolve(path: &Path) -> PathBuf {
     fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
@@ -94,13 +118,7 @@ fn open(path: &Path) -> io::Result<Out> {
     if old.as_ref().is_some_and(|old| !old.is_file()) {
         return Ok(Out::Device(File::options().write(true).open(path)?));
     }
-    // The first call holds for all files.
-    let _ = ctrlc::set_handler(|| {
-        for path in TEMPORARIES.lock().unwrap().iter() {
-            let _ = fs::remove_file(path);
-        }
-        std::process::exit(130);
-    });
+    handle_interrupts();
     let folder = path.parent().unwrap_or(Path::new("/"));
     fs::metadata(folder)?; // else the message would name the temporary file
     let mut all = TEMPORARIES.lock().unwrap();

@@ -2,6 +2,7 @@
 //! model itself is the library `prob_water`.
 
 mod brdf;
+mod empirical_table;
 mod files;
 mod image;
 mod input;
@@ -12,6 +13,7 @@ mod scenario;
 mod spectrum;
 mod surface;
 mod table;
+mod threads;
 mod toml_file;
 mod wind;
 
@@ -45,12 +47,13 @@ type Outcome = Result<(), Stop>;
 /// A subcommand: its flags, and what it does with them.
 type Subcommand = (fn() -> Command, fn(&ArgMatches) -> Outcome);
 
-const SUBCOMMANDS: [Subcommand; 5] = [
+const SUBCOMMANDS: [Subcommand; 6] = [
     (wind::command, wind::run),
     (spectrum::command, spectrum::run),
     (surface::command, surface::run),
     (brdf::command, brdf::run),
     (scenario::command, scenario::run),
+    (empirical_table::command, empirical_table::run),
 ];
 
 fn main() -> ExitCode {

@@ -17,6 +17,8 @@ pub struct Model<'d> {
     pub at: Option<Item<'d>>,
     /// Its keys.
     pub items: Vec<Item<'d>>,
+    /// The key that names a table of the empirical model.
+    pub table: Option<Item<'d>>,
 }
 
 /// Whether a flag replaces a parameter of the file: a wind the whole wind.
@@ -26,23 +28,25 @@ fn replaces(flag: &str, name: &str) -> bool {
 
 impl<'d> Model<'d> {
     /// The sea of a file that has nothing else to say: the file itself, or its `[model]`. What a scenario asks about
-    /// the sea may stand there too, and is passed over.
+    /// the sea may stand there too; but for the table it is passed over.
     pub fn alone(document: &'d Document, root: &'d DeTable<'d>) -> Result<Self, String> {
         let mut items = document.items(root);
         let at = items.iter().position(|item| item.name == "model").map(|at| items.remove(at));
+        let mut table = items.iter().find(|item| item.name == settings::TABLE).copied();
         items.retain(|item| item.name != "engagement" && !settings::is(item.name));
         if let Some(model) = at {
             if let Some(item) = items.first() {
                 return Err(item.refuse(format!("{} stands outside of [model]", item.name)));
             }
             items = model.table()?;
+            table = items.iter().find(|item| item.name == settings::TABLE).copied().or(table);
             items.retain(|item| !settings::is(item.name));
         }
-        Ok(Self { document, at, items })
+        Ok(Self { document, at, items, table })
     }
 
-    /// The same, for another surface where one is asked for: by a flag, or by a subcommand that knows drawn waves
-    /// alone. Then the file's `surface` is left out, and its footprint where it is infinite: nothing longer is drawn.
+    /// The same, for another surface where one is asked for: by a flag, or by a subcommand that knows a single
+    /// one. Then the file's `surface` is left out, and its footprint where it is infinite: nothing longer is drawn.
     pub fn for_surface(mut self, flags: &[Flag], surfaces: &[Surface]) -> Result<Self, String> {
         let Some(item) = self.items.iter().find(|item| item.name == "surface") else { return Ok(self) };
         let surface = |value: &Value| {
@@ -52,8 +56,10 @@ impl<'d> Model<'d> {
         let own = surface(&item.value()?).map_err(|e| item.refuse(e))?;
         let wanted = match flags.iter().find(|(flag, _)| *flag == "surface") {
             Some((_, value)) => surface(value).map_err(|e| e.to_string())?,
-            None if surfaces == [Surface::Instance] => Surface::Instance,
-            None => own,
+            None => match surfaces {
+                [only] => *only,
+                _ => own,
+            },
         };
         if own != wanted {
             let infinite = |item: &Item| {

@@ -2,6 +2,7 @@
 
 use crate::image;
 use crate::model::Model;
+use crate::scenario::settings;
 use crate::toml_file::Document;
 use clap::{Arg, ArgMatches, value_parser};
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
@@ -50,15 +51,26 @@ pub fn given(matches: &ArgMatches) -> Vec<(&'static str, Value)> {
 
 /// The sea that flags and `--from` describe, on one of the surfaces that a subcommand knows: the first unless told.
 pub fn water_on(surfaces: &[Surface], matches: &ArgMatches) -> Result<Water, String> {
+    Ok(water_and_table(surfaces, matches)?.0)
+}
+
+/// The same, and the table of the empirical model that the file of `--from` names.
+pub fn water_and_table(
+    surfaces: &[Surface],
+    matches: &ArgMatches,
+) -> Result<(Water, Option<PathBuf>), String> {
     let flags = given(matches);
     match matches.get_one::<PathBuf>(FROM) {
         Some(path) => {
             let document = open(path)?;
             let root = document.parse()?;
-            Model::alone(&document, &root)?.for_surface(&flags, surfaces)?.water(&flags, surfaces)
+            let model = Model::alone(&document, &root)?.for_surface(&flags, surfaces)?;
+            let table = model.table.as_ref().map(|item| settings::table(item, path)).transpose()?;
+            Ok((model.water(&flags, surfaces)?, table))
         }
         None => build(Builder::on(surfaces[0]), &flags)
             .and_then(|water| water.on(surfaces))
+            .map(|water| (water, None))
             .map_err(|e| e.to_string()),
     }
 }

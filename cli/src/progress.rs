@@ -16,10 +16,18 @@ pub struct Progress {
 impl Progress {
     /// A run of so many steps. Rows that scroll by on the terminal show progress enough.
     pub fn new(steps: u64, to_file: bool) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden())
-            .with_style(ProgressStyle::with_template("{wide_bar} {percent:>3} %").expect("a valid template"));
+        let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden()).with_style(
+            ProgressStyle::with_template("{wide_bar} {percent:>3} %, {eta} left").expect("a valid template"),
+        );
         let wanted = to_file || !io::stdout().is_terminal();
         Self { bar, start: Instant::now(), wanted, shown: Once::new() }
+    }
+
+    /// So many steps were done by an earlier run, which tells nothing of how long the rest takes.
+    pub fn resumed(self, steps: u64) -> Self {
+        self.bar.set_position(steps);
+        self.bar.reset_eta();
+        self
     }
 
     /// So many steps are done.

@@ -6,11 +6,13 @@ pub mod settings;
 mod tables;
 
 use crate::progress::Progress;
-use crate::{Outcome, parameters, table};
+use crate::{Outcome, empirical_table, parameters, table, threads};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use file::{Method, Scenario};
 use prob_water::exact::Exact;
-use prob_water::{Ensemble, Surface};
+use prob_water::{EmpiricalLobe, Engagement, Ensemble, Estimate, Statistics, Surface};
+use rayon::prelude::*;
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use tables::Tables;
 
@@ -29,30 +31,21 @@ pub fn command() -> Command {
                 .value_name("FILE")
                 .help("write what every observer saw of every instance to FILE, whole or not at all"),
         )
-        .arg(
-            Arg::new("threads")
-                .long("threads")
-                .value_name("N")
-                .value_parser(value_parser!(u16).range(1..=1024))
-                .help("threads, 1 to 1024; results do not depend on it [default: one for every core]"),
-        )
+        .arg(threads::flag())
+        .arg(empirical_table::flag())
         .args(parameters::flags(Surface::Instance))
 }
 
 /// Checks the whole file, then writes a row for every engagement and observer.
 pub fn run(matches: &ArgMatches) -> Outcome {
-    if let Some(threads) = matches.get_one::<u16>("threads") {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(*threads))
-            .build_global()
-            .map_err(|e| format!("cannot start {threads} threads: {e}"))?;
-    }
+    threads::start(matches)?;
     let path = matches.get_one::<PathBuf>("input").expect("is required");
-    let scenario = Scenario::read(path, &parameters::given(matches))?;
+    let scenario = Scenario::read(path, &parameters::given(matches), empirical_table::given(matches))?;
     let tables = Tables::open(matches, &scenario)?;
     match &scenario.method {
         Method::Draws(ensemble) => draws(&scenario, ensemble, tables),
         Method::Exact(exact) => integrals(&scenario, exact, tables),
+        Method::Table(lobe) => by_table(&scenario, lobe, tables),
     }
 }
 
@@ -77,9 +70,63 @@ fn integrals(scenario: &Scenario, exact: &Exact, mut tables: Tables) -> Outcome 
         let all = exact.statistics(engagement, &scenario.limits);
         progress.add(1);
         progress.aside(|| {
-            all.iter().enumerate().try_for_each(|(observer, s)| tables.statistics(engagement, observer, s))
+            let mut all = all.iter().enumerate();
+            all.try_for_each(|(observer, s)| tables.statistics(engagement, observer, s, None))
         })?;
     }
     drop(progress);
     tables.end()
+}
+
+/// Engagements worked on at a time.
+const GROUP: usize = 256;
+
+/// Eqs. 90-91, and draws through the table's spreads for all that they do not give.
+fn by_table(scenario: &Scenario, lobe: &EmpiricalLobe, mut tables: Tables) -> Outcome {
+    let p = &scenario.water.parameters;
+    let draws = u32::try_from(p.instances).ok().and_then(NonZeroU32::new).expect("is checked");
+    let seen = |engagement: &Engagement| -> Vec<(Estimate, Statistics)> {
+        let statistics = |[i, o]: [[f64; 3]; 2]| {
+            let estimate = lobe.estimate(i, o);
+            let drawn = lobe.monte_carlo(i, o, draws, p.seed, &scenario.limits);
+            (estimate, Statistics { mean: estimate.mean, std: estimate.std, sem: 0.0, ..drawn })
+        };
+        let ways: Vec<_> = engagement.ways().collect();
+        ways.into_par_iter().map(statistics).collect()
+    };
+    let progress = Progress::new(scenario.engagements.len() as u64, true);
+    // How many rows lie outside of the table's grid, and the first of them.
+    let (mut outside, mut first) = (0, String::new());
+    for group in scenario.engagements.chunks(GROUP) {
+        let all: Vec<_> = group
+            .par_iter()
+            .map(|engagement| {
+                let row = seen(engagement);
+                progress.add(1);
+                row
+            })
+            .collect();
+        for (engagement, all) in group.iter().zip(&all) {
+            for (observer, (estimate, statistics)) in all.iter().enumerate() {
+                if estimate.outside {
+                    outside += 1;
+                    if outside == 1 {
+                        first = format!("time {}, observer {observer}", engagement.time());
+                    }
+                }
+                progress
+                    .aside(|| tables.statistics(engagement, observer, statistics, Some(estimate.outside)))?;
+            }
+        }
+    }
+    drop(progress);
+    tables.end()?;
+    if outside > 0 {
+        let rows: usize = scenario.engagements.iter().map(|e| e.observers().len()).sum();
+        eprintln!(
+            "prob-water: warning: {outside} of {rows} rows are outside of the table's grid (column outside), the first at {first}: \
+             they are its nearest values"
+        );
+    }
+    Ok(())
 }

@@ -103,9 +103,14 @@ impl<'d> Item<'d> {
         numbers.try_into().map_err(|_| self.is_not("[x, y, z]"))
     }
 
+    /// Text.
+    pub fn text(&self) -> Result<&'d str, String> {
+        self.value.get_ref().as_str().ok_or_else(|| self.is_not("a word"))
+    }
+
     /// One of some words.
     pub fn choice<C: Copy>(&self, choices: &[(&str, C)]) -> Result<C, String> {
-        let word = self.value.get_ref().as_str().ok_or_else(|| self.is_not("a word"))?;
+        let word = self.text()?;
         choices.iter().find(|(name, _)| *name == word).map(|(_, choice)| *choice).ok_or_else(|| {
             let allowed: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
             self.refuse(format!("{} = {word} is unknown: allowed is {}", self.name, allowed.join(", ")))

@@ -41,7 +41,8 @@ const ROW: [&str; 11] = [
 ];
 
 fn row(matches: &ArgMatches) -> Outcome {
-    let water = parameters::water_on(&[Surface::Flat, Surface::Instance, Surface::Ensemble], matches)?;
+    let all = [Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
+    let water = parameters::water_on(&all, matches)?;
     let wind = &water.wind;
     let beaufort = wind.beaufort();
     let mut out = Table::new(matches, ROW)?;

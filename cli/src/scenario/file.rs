@@ -2,10 +2,11 @@
 
 use super::engagement;
 use super::settings::{self, Settings};
+use crate::empirical_table;
 use crate::model::{Flag, Model};
 use crate::toml_file::Document;
 use prob_water::exact::Exact;
-use prob_water::{Draws, Engagement, Ensemble, Surface, Water};
+use prob_water::{Draws, EmpiricalLobe, Engagement, Ensemble, Error, Surface, Water};
 use std::path::Path;
 
 /// What a file describes; checked.
@@ -26,14 +27,16 @@ pub enum Method {
     Draws(Box<Ensemble>),
     /// Integrals over all surfaces.
     Exact(Box<Exact>),
+    /// A table of the empirical model.
+    Table(Box<EmpiricalLobe>),
 }
 
 impl Scenario {
-    /// Reads a file; flags stand above its `[model]`. Whatever is wrong is refused here.
-    pub fn read(path: &Path, flags: &[Flag]) -> Result<Self, String> {
+    /// Reads a file; flags stand above its `[model]`, and a table above its own. Whatever is wrong is refused here.
+    pub fn read(path: &Path, flags: &[Flag], table: Option<&Path>) -> Result<Self, String> {
         let document = Document::read(path)?;
         let root = document.parse()?;
-        let mut model = Model { document: &document, at: None, items: Vec::new() };
+        let mut model = Model { document: &document, at: None, items: Vec::new(), table: None };
         let mut own = Vec::new();
         let mut entries = Vec::new();
         for item in document.items(&root) {
@@ -59,7 +62,9 @@ impl Scenario {
             return Err(document.refuse(0, "[[engagement]] is missing"));
         }
         let settings = Settings::read(&own)?;
-        let water = model.water(flags, &[Surface::Instance])?;
+        model.table = own.iter().find(|item| item.name == settings::TABLE).copied();
+        let water = model.water(flags, &[Surface::Instance, Surface::Empirical])?;
+        settings::check(&own, water.parameters.surface)?;
         let mut engagements = Vec::new();
         // Of every engagement, where it stands.
         let mut places = Vec::new();
@@ -68,7 +73,11 @@ impl Scenario {
             places.resize(places.len() + of_entry.len(), entry);
             engagements.extend(of_entry);
         }
-        let method = if settings.exact {
+        let method = if water.parameters.surface == Surface::Empirical {
+            Method::Table(Box::new(by_table(path, &model, &water, flags, table)?))
+        } else if table.is_some() {
+            return Err(empirical_table::MEANINGLESS.into());
+        } else if settings.exact {
             let exact = Exact::new(&water).map_err(|e| model.refuse(flags, &e, None))?;
             Method::Exact(Box::new(exact))
         } else {
@@ -84,4 +93,28 @@ impl Scenario {
         };
         Ok(Self { water, method, limits: settings.limits, engagements })
     }
+}
+
+/// More draws say nothing more of a table.
+const MOST_DRAWS: u64 = 10_000_000;
+
+/// The sea by the table that a flag names, or the file, or by the built-in one.
+fn by_table(
+    file: &Path,
+    model: &Model,
+    water: &Water,
+    flags: &[Flag],
+    flag: Option<&Path>,
+) -> Result<EmpiricalLobe, String> {
+    let instances = water.parameters.instances;
+    if instances > MOST_DRAWS {
+        let allowed = format!("1 to {MOST_DRAWS} with surface = empirical");
+        let error = Error::OutOfRange { parameter: "instances", value: instances.to_string(), allowed };
+        return Err(model.refuse(flags, &error, None));
+    }
+    let own = model.table.as_ref().map(|item| settings::table(item, file)).transpose()?;
+    empirical_table::lobe(water, flag.or(own.as_deref())).map_err(|error| match (&error, flag) {
+        (Error::Table { .. }, Some(_)) => error.to_string(), // not the file's fault
+        _ => model.refuse(flags, &error, model.table.as_ref()),
+    })
 }

@@ -1,10 +1,13 @@
 //! The keys that are a scenario's own: what is asked about the sea.
 
 use crate::toml_file::Item;
-use prob_water::{Draws, Presence};
+use prob_water::{Draws, Presence, Surface};
+use std::path::{Path, PathBuf};
 
 /// Their names.
-pub const KEYS: [&str; 4] = ["limits", "statistics", "draws", "whitecap_presence"];
+pub const KEYS: [&str; 5] = ["limits", "statistics", "draws", "whitecap_presence", TABLE];
+/// The one that names a table of the empirical model.
+pub const TABLE: &str = "table";
 
 /// Whether a key is one of them.
 pub fn is(name: &str) -> bool {
@@ -38,6 +41,7 @@ impl Settings {
                 "draws" => {
                     settings.draws = item.choice(&[("random", Draws::Random), ("sobol", Draws::Sobol)])?;
                 }
+                TABLE => (), // Model's
                 _ => {
                     settings.presence =
                         item.choice(&[("drawn", Presence::Drawn), ("expected", Presence::Expected)])?;
@@ -56,6 +60,29 @@ impl Settings {
             }
             None => Ok(settings),
         }
+    }
+}
+
+/// The path that `table = "..."` gives, from the folder of the file it stands in.
+pub fn table(item: &Item, file: &Path) -> Result<PathBuf, String> {
+    Ok(file.parent().unwrap_or(Path::new("")).join(item.text()?))
+}
+
+/// Refuses what a table of the empirical model has no use for, or a table where there is none.
+pub fn check(items: &[Item], surface: Surface) -> Result<(), String> {
+    let empirical = surface == Surface::Empirical;
+    let meaningless = |item: &&Item| match item.name {
+        "limits" => false,
+        TABLE => !empirical,
+        _ => empirical,
+    };
+    match items.iter().find(meaningless) {
+        Some(item) if empirical => Err(item.refuse(format!(
+            "{} has no meaning with surface = empirical: statistics come from its table",
+            item.name
+        ))),
+        Some(item) => Err(item.refuse("table has no meaning but with surface = empirical")),
+        None => Ok(()),
     }
 }
 

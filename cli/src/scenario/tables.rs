@@ -40,9 +40,14 @@ impl Tables {
     /// Both, so that neither is found impossible after the work is done.
     pub fn open(matches: &ArgMatches, scenario: &Scenario) -> Result<Self, Stop> {
         let instances_out = matches.contains_id("instances_out");
-        if instances_out && matches!(scenario.method, Method::Exact(_)) {
-            let message = "--instances-out has no meaning with statistics = exact: there are no instances";
-            return Err(Stop::Refused(message.into()));
+        let without_instances = match scenario.method {
+            Method::Draws(_) => None,
+            Method::Exact(_) => Some("statistics = exact"),
+            Method::Table(_) => Some("surface = empirical"),
+        };
+        if let Some(with) = without_instances.filter(|_| instances_out) {
+            let message = format!("--instances-out has no meaning with {with}: there are no instances");
+            return Err(Stop::Refused(message));
         }
         let [path, other] = ["output", "instances_out"].map(|flag| table::path(matches, flag));
         if instances_out && path.map(files::resolve) == other.map(files::resolve) {
@@ -54,9 +59,13 @@ impl Tables {
         };
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let limits = scenario.limits.iter().map(|limit| format!("p_over_{limit}"));
+        let outside = matches!(scenario.method, Method::Table(_)).then(|| "outside".to_owned());
         let parameters = &scenario.water.parameters;
         Ok(Self {
-            statistics: Some(open(path, names(&STATISTICS).into_iter().chain(limits).collect())?),
+            statistics: Some(open(
+                path,
+                names(&STATISTICS).into_iter().chain(limits).chain(outside).collect(),
+            )?),
             instances: instances_out.then(|| open(other, names(&INSTANCES))).transpose()?,
             readings: parameters.get("readings").map(|value| value.to_string()).unwrap_or_default(),
             seed: parameters.seed,
@@ -67,21 +76,28 @@ impl Tables {
     pub fn group(&mut self, engagements: &[Engagement], samples: &Samples, limits: &[f64]) -> Outcome {
         for (i, engagement) in engagements.iter().enumerate() {
             for observer in 0..engagement.observers().len() {
-                self.statistics(engagement, observer, &samples.statistics(i, observer, limits))?;
+                self.statistics(engagement, observer, &samples.statistics(i, observer, limits), None)?;
                 self.instances(engagement, observer, samples, i)?;
             }
         }
         Ok(())
     }
 
-    /// What an observer sees of all instances.
-    pub fn statistics(&mut self, engagement: &Engagement, observer: usize, s: &Statistics) -> Outcome {
+    /// What an observer sees of all instances; by a table, whether that is outside of its grid.
+    pub fn statistics(
+        &mut self,
+        engagement: &Engagement,
+        observer: usize,
+        s: &Statistics,
+        outside: Option<bool>,
+    ) -> Outcome {
         let Some(table) = &mut self.statistics else { return Ok(()) };
         let mut row = vec![Cell::Number(engagement.time()), Cell::Count(observer as u64)];
         row.extend([s.mean, s.std, s.sem, s.min].map(Cell::Number));
         row.extend(s.quantiles.map(Cell::Number));
         row.extend([s.max, s.mean_f_cos, s.obscured, s.whitecap].map(Cell::Number));
         row.extend(s.over.iter().copied().map(Cell::Number));
+        row.extend(outside.map(|outside| Cell::Count(outside.into())));
         row.extend(origin(&self.readings, self.seed));
         match table.row(&row) {
             Err(Stop::ReaderLeft) if self.instances.is_some() => self.statistics = None,

@@ -2,7 +2,7 @@
 
 use crate::{refuse, succeed};
 use exr::prelude::*;
-use prob_water::{Average, Body, Fresnel, Parameters, Readings, SlopeMeasure, Surface, Wind};
+use prob_water::{Across, Average, Body, Fresnel, Parameters, Readings, SlopeMeasure, Surface, Wind};
 use std::fs;
 use std::path::Path;
 
@@ -49,6 +49,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         footprint: 0.21,
         surface,
         average: Average::Report,
+        across: Across::Slopes,
         components: 7,
         instances: 30,
         seed: 9_007_199_254_740_991,

@@ -1,6 +1,7 @@
 //! The command as users run it: the real binary, its streams and its exit status.
 
 mod brdf;
+mod empirical;
 mod files;
 mod from;
 #[cfg(unix)]
@@ -10,6 +11,7 @@ mod scenario;
 mod scenario_refusals;
 mod spectrum;
 mod surface;
+mod table;
 mod wind;
 
 use std::fs;
