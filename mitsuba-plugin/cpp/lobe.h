@@ -52,11 +52,13 @@ template <typename Float_> struct Lobe {
         whitecap_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
+    /// Part of the kernel: 0 but for lobes that others are compared with.
+    float least_correction = 0.f;
     float ierfc[7] = {};
 
     explicit Lobe(const Coefficients &c)
         : exact(c.exact), slope_measure(c.slope_measure), gram_charlier(c.gram_charlier), shadowing(c.shadowing),
-          bounded(c.bounded), as_printed(c.as_printed) {
+          bounded(c.bounded), as_printed(c.as_printed), least_correction(c.least_correction) {
         for (int k = 0; k < 7; ++k)
             ierfc[k] = c.ierfc[k];
         auto data = [](float x) { return drjit::opaque<Float>(x); };
@@ -282,6 +284,7 @@ template <typename Float_> struct Lobe {
 private:
     template <typename> friend struct Afar;
     template <typename> friend struct Drawn;
+    template <typename> friend struct Tabled;
 
     /// What the source fixes of the facets' proposal: its horizontal components, components of z that make rD,
     /// 1/cos theta_i, 1/D, D phi(1/D).
@@ -393,7 +396,7 @@ private:
             k = dr::fmadd(.40f / 24.f, dr::fmadd(c2, c2 - 6.f, 3.f), k);
             k = dr::fmadd((.12f / 4.f) * (c2 - 1.f), u2 - 1.f, k);
             k = dr::fmadd(.23f / 24.f, dr::fmadd(u2, u2 - 6.f, 3.f), k);
-            p *= larger(k, 0.f);
+            p *= larger(k, least_correction);
         }
 
         // Eqs. 61-67, at least what the facets themselves hide where the bound is in force.

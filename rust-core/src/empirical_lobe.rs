@@ -64,10 +64,13 @@ pub struct FineGrid {
     pub steps: [u32; 3],
     /// The largest tan(theta_i/2).
     pub incidence: f64,
-    /// Row by row of theta_r, of every interval what its two ends hold: both logarithms and both shares of whitecaps.
+    /// By intervals of theta_i and of the azimuth and by theta_r, what the four corners of the two intervals hold, the
+    /// azimuth's fastest: logarithms, and with `whitecaps` their shares.
     pub in_plane: Vec<f32>,
-    /// Row by row of azimuths: sigma and delta.
+    /// By the same intervals: sigma of the four corners, then delta.
     pub widths: Vec<f32>,
+    /// There are whitecaps.
+    pub whitecaps: bool,
     /// `across = "slopes"`.
     pub slopes: bool,
 }
@@ -310,12 +313,26 @@ impl EmpiricalLobe {
 
     /// For traced code.
     pub fn fine_grid(&self) -> FineGrid {
-        let pairs = self.in_plane.chunks(THETAS + 1).flat_map(|row| row.windows(2));
+        let whitecaps = self.in_plane.iter().any(|cell| cell[1] > 0.0);
+        // One look into memory finds all four.
+        let corners = (0..INCIDENCES * AZIMUTHS).map(|k| {
+            let row = k / AZIMUTHS * (AZIMUTHS + 1) + k % AZIMUTHS;
+            [row, row + 1, row + AZIMUTHS + 1, row + AZIMUTHS + 2]
+        });
+        let in_plane = corners.clone().flat_map(|rows| {
+            (0..=THETAS).flat_map(move |theta| {
+                let at = |n: usize| rows.map(|row| self.in_plane[row * (THETAS + 1) + theta][n]);
+                let shares = whitecaps.then(|| at(1));
+                at(0).into_iter().chain(shares.into_iter().flatten())
+            })
+        });
+        let widths = corners.clone().flat_map(|rows| [0, 2].map(|n| rows.map(|row| self.widths[row][n])));
         FineGrid {
             steps: [INCIDENCES as u32, AZIMUTHS as u32, THETAS as u32],
             incidence: self.incidences[1],
-            in_plane: pairs.flat_map(|ends| [ends[0][0], ends[1][0], ends[0][1], ends[1][1]]).collect(),
-            widths: self.widths.iter().flat_map(|cell| [cell[0], cell[2]]).collect(),
+            in_plane: in_plane.collect(),
+            widths: widths.flatten().collect(),
+            whitecaps,
             slopes: self.slopes.is_some(),
         }
     }
