@@ -15,9 +15,9 @@ template <typename Float_> struct Tabled {
     using UInt32 = drjit::uint32_array_t<Float>;
     using Vector3f = mitsuba::Vector<Float, 3>;
     using Buffer = mitsuba::DynamicBuffer<Float>;
-    /// What the corners of an interval of theta_i and one of the azimuth hold, of one quantity and of two.
-    using Corners = drjit::Array<Float, 4>;
-    using TwoCorners = drjit::Array<Float, 8>;
+    /// What the ends of an interval of the azimuth hold, of one quantity and of two.
+    using Ends = drjit::Array<Float, 2>;
+    using TwoEnds = drjit::Array<Float, 4>;
 
     /// Over tan(theta_i/2), the stand-in of the azimuth and tan(theta_r/2); 0 for another surface.
     uint32_t incidences = 0, azimuths = 0, thetas = 0;
@@ -62,35 +62,44 @@ template <typename Float_> struct Tabled {
         auto [a, s] = split(tan_i * inv_step, incidences);
         auto [b, t] = split(.5f * azimuths * around, azimuths);
         auto [k, r] = split(dr::fmadd(.5f * thetas, tan_r, .5f * thetas), thetas);
-        auto between = [&](const Corners &c) {
-            Float near = dr::fmadd(t, c[1] - c[0], c[0]), far = dr::fmadd(t, c[3] - c[2], c[2]);
-            return Float(dr::fmadd(s, far - near, near));
-        };
         UInt32 cell = a * azimuths + b, row = cell * (thetas + 1) + k;
-        Corners level, foam;
-        if (whitecaps)
-            std::tie(level, foam) = halves(along<TwoCorners>(row, r));
-        else
-            level = along<Corners>(row, r);
+        // Between two angles theta_i, and two theta_r.
+        auto across = [&](auto near, const auto &far) { return dr::fmadd(decltype(near)(s), far - near, near); };
+        auto along = [&](auto packet, const UInt32 &row) {
+            using Packet = decltype(packet);
+            Packet low = dr::gather<Packet>(in_plane, row), high = dr::gather<Packet>(in_plane, row + 1u);
+            return dr::fmadd(Packet(r), high - low, low);
+        };
+        auto plane = [&](auto packet) { return across(along(packet, row), along(packet, row + azimuths * (thetas + 1))); };
+        auto between = [&](const Float &from, const Float &to) { return Float(dr::fmadd(t, to - from, from)); };
+        Float level, foam;
+        if (whitecaps) {
+            TwoEnds ends = plane(TwoEnds());
+            level = between(ends[0], ends[1]);
+            foam = between(ends[2], ends[3]);
+        } else {
+            Ends ends = plane(Ends());
+            level = between(ends[0], ends[1]);
+        }
 
         Float f = 0.f;
         if (parts.facets && slopes) {
-            f = smaller(lobe.facets(g), Lobe<Float>::Largest) * dr::exp(between(level));
+            f = smaller(lobe.facets(g), Lobe<Float>::Largest) * dr::exp(level);
         } else if (parts.facets) {
-            auto [sigma, delta] = halves(dr::gather<TwoCorners>(widths, cell));
+            TwoEnds w = across(dr::gather<TwoEnds>(widths, cell), dr::gather<TwoEnds>(widths, cell + azimuths));
             // Eqs. 87-89 by half angles; what the plane is tilted by divides both sides of phi.
             Float tan2 = tan_i * tan_i, one = 1.f + tan2, aside = dr::fmsub(o.y(), x, o.x() * y) * inv * one,
                   specular = dr::abs(dr::fmadd(2.f * tan_i, forward, (1.f - tan2) * o_z)), abs = dr::abs(aside),
                   most = larger(larger(abs, specular), Small),
                   phi = Lobe<Float>::template angle<Float>(aside, specular, abs, most, dr::rcp(most)),
-                  off = dr::select(sin < 0.f, -phi, phi) - between(delta), lower = smaller(tan_i, tan_r),
-                  narrow = between(sigma) * dr::fnmadd(tan_i, lower, 1.f),
+                  off = dr::select(sin < 0.f, -phi, phi) - between(w[2], w[3]), lower = smaller(tan_i, tan_r),
+                  narrow = between(w[0], w[1]) * dr::fnmadd(tan_i, lower, 1.f),
                   x2 = off * off * one * dr::fmadd(lower, lower, 1.f) * dr::rcp(narrow * narrow),
                   rho = lobe.template reflectance<Float>(smaller(.5f * dr::norm(i + o), 1.f));
-            f = rho * dr::exp(between(level) - x2);
+            f = rho * dr::exp(level - x2);
         }
         if (parts.whitecaps && whitecaps)
-            f = dr::fmadd(lobe.whitecap_brdf, between(foam), f);
+            f = dr::fmadd(lobe.whitecap_brdf, foam, f);
         return dr::select(lit, f * o_z, 0.f);
     }
 
@@ -99,17 +108,6 @@ private:
     static std::pair<UInt32, Float> split(const Float &x, uint32_t steps) {
         UInt32 k = drjit::minimum(UInt32(x), steps - 1);
         return { k, x - Float(k) };
-    }
-
-    /// Between two angles theta_r.
-    template <typename Packet> Packet along(const UInt32 &row, const Float &r) const {
-        namespace dr = drjit;
-        Packet low = dr::gather<Packet>(in_plane, row), high = dr::gather<Packet>(in_plane, row + 1u);
-        return dr::fmadd(Packet(r), high - low, low);
-    }
-
-    static std::pair<Corners, Corners> halves(const TwoCorners &c) {
-        return { { c[0], c[1], c[2], c[3] }, { c[4], c[5], c[6], c[7] } };
     }
 };
 

@@ -64,10 +64,10 @@ pub struct FineGrid {
     pub steps: [u32; 3],
     /// The largest tan(theta_i/2).
     pub incidence: f64,
-    /// By intervals of theta_i and of the azimuth and by theta_r, what the four corners of the two intervals hold, the
-    /// azimuth's fastest: logarithms, and with `whitecaps` their shares.
+    /// By theta_i, by intervals of the azimuth and by theta_r, what the interval's two ends hold: logarithms, and with
+    /// `whitecaps` their shares.
     pub in_plane: Vec<f32>,
-    /// By the same intervals: sigma of the four corners, then delta.
+    /// By theta_i and intervals of the azimuth: sigma of the two ends, then delta.
     pub widths: Vec<f32>,
     /// There are whitecaps.
     pub whitecaps: bool,
@@ -314,19 +314,19 @@ impl EmpiricalLobe {
     /// For traced code.
     pub fn fine_grid(&self) -> FineGrid {
         let whitecaps = self.in_plane.iter().any(|cell| cell[1] > 0.0);
-        // One look into memory finds all four.
-        let corners = (0..INCIDENCES * AZIMUTHS).map(|k| {
+        // What is needed together lies together, so that a look into memory finds it.
+        let ends = (0..(INCIDENCES + 1) * AZIMUTHS).map(|k| {
             let row = k / AZIMUTHS * (AZIMUTHS + 1) + k % AZIMUTHS;
-            [row, row + 1, row + AZIMUTHS + 1, row + AZIMUTHS + 2]
+            [row, row + 1]
         });
-        let in_plane = corners.clone().flat_map(|rows| {
+        let in_plane = ends.clone().flat_map(|rows| {
             (0..=THETAS).flat_map(move |theta| {
                 let at = |n: usize| rows.map(|row| self.in_plane[row * (THETAS + 1) + theta][n]);
                 let shares = whitecaps.then(|| at(1));
                 at(0).into_iter().chain(shares.into_iter().flatten())
             })
         });
-        let widths = corners.clone().flat_map(|rows| [0, 2].map(|n| rows.map(|row| self.widths[row][n])));
+        let widths = ends.clone().flat_map(|rows| [0, 2].map(|n| rows.map(|row| self.widths[row][n])));
         FineGrid {
             steps: [INCIDENCES as u32, AZIMUTHS as u32, THETAS as u32],
             incidence: self.incidences[1],
