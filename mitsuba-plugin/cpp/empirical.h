@@ -1,6 +1,6 @@
 /**
- * The empirical model as a Dr.Jit expression, `surface = "empirical"`: the twin of the Rust core's empirical_lobe.rs over
- * the same fine grid. Directions are drawn by the Lobe beside it.
+ * The empirical model as a Dr.Jit expression, `surface = "empirical"`: the twin of the Rust core's empirical_lobe.rs
+ * over the same fine grid. Directions are drawn by the Lobe beside it.
  */
 #pragma once
 
@@ -51,7 +51,7 @@ template <typename Float_> struct Tabled {
         Float flat2 = dr::fmadd(i.x(), i.x(), i.y() * i.y());
         Mask overhead = flat2 < 1e-12f;
         Float x = dr::select(overhead, cos_wind, -i.x()), y = dr::select(overhead, sin_wind, -i.y()),
-              inv = dr::select(overhead, 1.f, dr::rsqrt(flat2)),
+              inv = dr::select(overhead, 1.f, dr::rsqrt(larger(flat2, 1e-12f))),
               tan_i = smaller(flat2 * inv * dr::rcp(1.f + larger(i.z(), 0.f)), last),
               // The wind's azimuth from there, to either side.
               cos = dr::fmadd(cos_wind, x, sin_wind * y), sin = dr::fmsub(sin_wind, x, cos_wind * y),
@@ -70,7 +70,8 @@ template <typename Float_> struct Tabled {
             Packet low = dr::gather<Packet>(in_plane, row), high = dr::gather<Packet>(in_plane, row + 1u);
             return dr::fmadd(Packet(r), high - low, low);
         };
-        auto plane = [&](auto packet) { return across(along(packet, row), along(packet, row + azimuths * (thetas + 1))); };
+        UInt32 next = row + azimuths * (thetas + 1);
+        auto plane = [&](auto packet) { return across(along(packet, row), along(packet, next)); };
         auto between = [&](const Float &from, const Float &to) { return Float(dr::fmadd(t, to - from, from)); };
         Float level, foam;
         if (whitecaps) {
@@ -87,7 +88,7 @@ template <typename Float_> struct Tabled {
             f = smaller(lobe.facets(g), Lobe<Float>::Largest) * dr::exp(level);
         } else if (parts.facets) {
             TwoEnds w = across(dr::gather<TwoEnds>(widths, cell), dr::gather<TwoEnds>(widths, cell + azimuths));
-            // Eqs. 87-89 by half angles; what the plane is tilted by divides both sides of phi.
+            // Eqs. 87-89 by half angles; both components that make phi are 1 + tan^2 times as long.
             Float tan2 = tan_i * tan_i, one = 1.f + tan2, aside = dr::fmsub(o.y(), x, o.x() * y) * inv * one,
                   specular = dr::abs(dr::fmadd(2.f * tan_i, forward, (1.f - tan2) * o_z)), abs = dr::abs(aside),
                   most = larger(larger(abs, specular), Small),
