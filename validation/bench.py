@@ -31,6 +31,8 @@ BSDFS: dict[str, dict[str, dict[str, Any]]] = {
         "prob_water, slopes": {"type": "prob_water", "slope_measure": "slope"},
         "prob_water, w* = 4": {"type": "prob_water", "friction_velocity": 4},
         "prob_water, ensemble": {"type": "prob_water", "surface": "ensemble"},
+        "prob_water, empirical": {"type": "prob_water", "surface": "empirical"},
+        "prob_water, empirical, slopes": {"type": "prob_water", "surface": "empirical", "across": "slopes"},
         "prob_water, instance": {"type": "prob_water", "surface": "instance"},
         "prob_water, footprint a texture": {"type": "prob_water", "footprint": {"type": "uniform", "value": 0.3}},
         "prob_water, no whitecaps": {"type": "prob_water", "whitecaps": False},
@@ -48,7 +50,8 @@ BSDFS: dict[str, dict[str, dict[str, Any]]] = {
 WATERS = [name for name, bsdf in BSDFS["prob_water"].items()
           if name.startswith("prob_water") and not {"surface", "footprint"} & bsdf.keys()]
 #: Operation, numerator, denominator and the least ratio aimed at.
-AIMS = [("eval", "prob_water", "ocean_legacy", 2.0), ("sample", "prob_water", "ocean_legacy", 3.0),
+AIMS = [("eval", "prob_water", "ocean_legacy", 2.0), ("eval", "prob_water, empirical", "ocean_legacy", 1.0),
+        ("sample", "prob_water", "ocean_legacy", 3.0),
         *(("sample", name, "roughconductor", 1.0) for name in WATERS)]
 
 

@@ -21,6 +21,8 @@ TRACED = {
     "instance": {"surface": "instance"},
     "instance, whitecaps off": {"surface": "instance", "whitecaps": False},
     "ensemble": {"surface": "ensemble"},
+    "empirical": {"surface": "empirical"},
+    "empirical, slopes": {"surface": "empirical", "across": "slopes"},
     "footprint a texture": {"footprint": {"type": "uniform", "value": 0.3}},
     "water_leaving": {"water_leaving": {"type": "uniform", "value": 0.02}},
 }

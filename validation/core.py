@@ -25,6 +25,7 @@ def _load():
         "eval": [pointer, size, pointer, pointer, pointer, pointer],
         "pdf": [pointer, size, pointer, pointer, pointer, pointer],
         "sample": [pointer, size] + [pointer] * 5,
+        "estimate": [pointer, size] + [pointer] * 5,
     }.items():
         getattr(capi, f"prob_water_{name}").argtypes = arguments
     return capi
@@ -73,6 +74,13 @@ class Core:
     def pdf(self, i, o):
         """Density of the observer's direction among draws for the source's, 1/sr."""
         return self._batch(self.capi.prob_water_pdf, i, o)
+
+    def estimate(self, i, o):
+        """Mean of f and its standard uncertainty, 1/sr, by the empirical model, and where they lie outside of the table."""
+        i, o = (np.ascontiguousarray(v, dtype=np.float64).reshape(-1, 3) for v in np.broadcast_arrays(i, o))
+        mean, std, outside = np.empty(len(i)), np.empty(len(i)), np.empty(len(i), dtype=np.uint8)
+        self._check(self.capi.prob_water_estimate(self.handle, len(i), *(a.ctypes.data for a in (i, o, mean, std, outside))))
+        return mean, std, outside.astype(bool)
 
     def albedo(self, i, steps=600):
         """Integral of f cos(theta_o) over the observer's hemisphere: midpoints in the half vector's tilts."""

@@ -282,6 +282,7 @@ template <typename Float_> struct Lobe {
 private:
     template <typename> friend struct Afar;
     template <typename> friend struct Drawn;
+    template <typename> friend struct Tabled;
 
     /// What the source fixes of the facets' proposal: its horizontal components, components of z that make rD,
     /// 1/cos theta_i, 1/D, D phi(1/D).

@@ -1,5 +1,6 @@
 #include "compatible.h"
 
+#include <mitsuba/core/fresolver.h>
 #include <mitsuba/core/properties.h>
 #include <mitsuba/core/warp.h>
 #include <mitsuba/render/bsdf.h>
@@ -14,6 +15,7 @@
 #include "rust/cxx.h"
 
 #include "afar.h"
+#include "empirical.h"
 #include "place.h"
 #include "sea.h"
 #include "words.h"
@@ -101,23 +103,34 @@ Wind-roughened water (:monosp:`prob_water`)
  * - surface
    - |string|
    - Which surface the facets lie on: :monosp:`flat`, the normal that the geometry gives; :monosp:`instance`, on a
-     level shape, the waves longer than two footprints of one drawn sea; or :monosp:`ensemble`, all that the wind may
-     raise, on average: the sea from afar. (Default: flat)
+     level shape, the waves longer than two footprints of one drawn sea; :monosp:`ensemble`, all that the wind may
+     raise, on average: the sea from afar; or :monosp:`empirical`, the same by a table of the report's empirical model.
+     (Default: flat)
 
  * - average
    - |string|
    - What the ensemble's average is of: :monosp:`power`, reciprocal, or the :monosp:`report`'s mean of f times the flat
      cosine. No effect on the flat surface. (Default: power)
 
+ * - across
+   - |string|
+   - How the empirical model falls off across the plane of incidence: as the :monosp:`report`'s Gaussian, or as the
+     :monosp:`slopes`' density. No effect on other surfaces. (Default: report)
+
+ * - table
+   - |string|
+   - File with a table of the empirical model, for an empirical surface, found as all files of a scene are. (Default: the
+     one inside the plugin: w* from 2 to 62.9 cm/s, footprints from 0.02 to 1 m, other parameters at their defaults)
+
  * - components, seed, time, depth, fetch
    - |float|
    - The vocabulary's words for drawn waves: how many there are, which, when (s), over which depth and fetch (m).
-     Components, depth and fetch matter to the ensemble as well. (Default: 5, 0, 0, inf, inf)
+     Components, depth and fetch matter to the ensemble as well, and must be a table's. (Default: 5, 0, 0, inf, inf)
    - time: |exposed| (for an instance)
 
  * - instances
    - |int|
-   - Checked, and without effect: an instance is one, an ensemble all.
+   - Checked, and without effect: an instance is one, an ensemble all, a table has its own.
 
  * - wavelength
    - |float|
@@ -188,6 +201,7 @@ public:
 
     using Lobe = prob_water::Lobe<Float>;
     using Afar = prob_water::Afar<Float>;
+    using Tabled = prob_water::Tabled<Float>;
     using FacetTable = prob_water::FacetTable<Float>;
     using Drawn = prob_water::Drawn<Float>;
     using Parts = prob_water::Parts;
@@ -197,6 +211,10 @@ public:
         if (props.has_property("water_leaving"))
             m_water_leaving = props.get_texture<Texture>("water_leaving");
         take(props);
+        if (props.has_property("table")) {
+            std::string path = file_resolver()->resolve(props.get<std::string_view>("table")).string();
+            refuse([&] { m_options->open_table(path); });
+        }
         double angle = props.get<double>("pixel_angle", 0.);
         if (!(angle >= 0. && angle < 90.) || (angle > 0. && !m_pixel))
             Throw("prob_water: pixel_angle = %s is out of range: allowed is 0 to 90 degrees, with footprint = pixel", angle);
@@ -410,8 +428,10 @@ private:
                 (name != "time" || drawn) && (!m_lent || name == "wavelength" || name == "ior"))
                 m_exposed.emplace_back(name, 0.f);
         apply();
-        if (m_whitecap_texture && water().kind() == prob_water::Kind::Ensemble)
-            Throw("prob_water: whitecaps = a texture is out of range: allowed is true or false with surface = ensemble");
+        bool ensemble = water().kind() == prob_water::Kind::Ensemble;
+        if (m_whitecap_texture && (ensemble || water().kind() == prob_water::Kind::Empirical))
+            Throw("prob_water: whitecaps = a texture is out of range: allowed is true or false with surface = %s",
+                  ensemble ? "ensemble" : "empirical");
     }
 
     /// Takes over what the configured sea says.
@@ -427,6 +447,7 @@ private:
         m_places = m_drawn_waves || m_whitecap_texture || varies();
         if constexpr (dr::is_jit_v<Float>) {
             m_afar = Afar(water.waves());
+            m_tabled = Tabled(water.fine_grid(), c);
             m_facets = FacetTable(water.facet_rows());
             m_drawn = Drawn(water.drawn_waves());
         }
@@ -522,6 +543,14 @@ private:
             return m_places ? prob_water_spot_whitecaps(&at.spot) : m_lobe.whitecap_fraction;
     }
 
+    /// f cos(theta_o) of facets and whitecaps in traced variants.
+    template <typename Geometry>
+    Float value(const Here &at, const Geometry &g, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
+        if (m_tabled.incidences)
+            return m_tabled.eval(at.lobe, wi, wo, parts);
+        return m_afar.rows ? m_afar.eval(at.lobe, wi, wo, parts) : at.lobe.eval(g, parts);
+    }
+
     /// f cos(theta_o) and density of facets and whitecaps, as far as wanted.
     template <bool Value, bool Pdf>
     std::pair<Float, Float> surface(const Here &at, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
@@ -530,13 +559,14 @@ private:
                 auto g = at.lobe.template geometry<decltype(type)>(wi, wo, at.frame);
                 Float value = 0.f, pdf = 0.f;
                 if (Value)
-                    value = m_afar.rows ? m_afar.eval(at.lobe, wi, wo, parts) : at.lobe.eval(g, parts);
+                    value = this->value(at, g, wi, wo, parts);
                 if (Pdf)
                     pdf = at.lobe.pdf(g, parts);
                 return std::pair<Float, Float>(value, pdf);
             };
             // Only Gram-Charlier's polynomial asks for digits to spare.
-            return Value && m_lobe.gram_charlier && !m_afar.rows ? run(Wide()) : run(Float());
+            bool closed = !m_afar.rows && !m_tabled.incidences;
+            return Value && m_lobe.gram_charlier && closed ? run(Wide()) : run(Float());
         } else {
             const prob_water::Water *sea = &water();
             uint32_t bits = parts.bits();
@@ -609,7 +639,7 @@ private:
             // A weight divides two Gaussians: it needs no digits to spare.
             auto g = at.lobe.template geometry<Float>(si.wi, bs.wo, at.frame);
             bs.pdf = at.lobe.pdf(g, on.parts);
-            value = m_afar.rows ? m_afar.eval(at.lobe, si.wi, bs.wo, on.parts) : at.lobe.eval(g, on.parts);
+            value = this->value(at, g, si.wi, bs.wo, on.parts);
         }
         active &= bs.pdf > 0.f;
         return finish(bs, spectrum(value / bs.pdf), whitecap, active);
@@ -656,10 +686,11 @@ private:
     bool m_pixel = false, m_whitecaps = false, m_drawn_waves = false, m_places = false, m_lent = false;
     Lobe m_lobe;
     Afar m_afar;
+    Tabled m_tabled;
     FacetTable m_facets;
     Drawn m_drawn;
 
-    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_lobe, m_afar, m_facets, m_drawn)
+    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_lobe, m_afar, m_tabled, m_facets, m_drawn)
 };
 
 extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn fn) {

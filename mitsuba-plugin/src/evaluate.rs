@@ -30,6 +30,7 @@ impl Water {
     fn eval(&self, i: [f32; 3], o: [f32; 3], parts: Parts) -> f32 {
         let f = match &self.waves {
             Waves::Afar(afar) => afar.eval_parts(i.map(f64::from), o.map(f64::from), parts) as f32,
+            Waves::Tabled(tabled) => tabled.eval_parts(i, o, parts),
             _ => self.lobe.eval_parts(i, o, up(), parts),
         };
         f * o[2].max(0.0)
@@ -81,7 +82,7 @@ pub extern "C" fn prob_water_bsdf_sample(
 ) {
     *sample = water.lobe.sample_parts(*i, up(), *u, parts(bits));
     sample.f = match water.waves {
-        Waves::Afar(_) => water.eval(*i, sample.direction, parts(bits)),
+        Waves::Afar(_) | Waves::Tabled(_) => water.eval(*i, sample.direction, parts(bits)),
         _ => sample.f * sample.direction[2].max(0.0),
     };
 }

@@ -5,8 +5,11 @@ mod surface;
 
 use prob_water::real::IERFC;
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
-use prob_water::{Average, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Surface, whitecap};
+use prob_water::{
+    Average, EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Surface, Table, whitecap,
+};
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
@@ -45,6 +48,7 @@ mod ffi {
         Flat,
         Instance,
         Ensemble,
+        Empirical,
     }
 
     /// What `prob_water::ensemble_lobe::Table` holds, for `surface = "ensemble"`; no rows where the sea is level.
@@ -56,6 +60,20 @@ mod ffi {
         foam: [f32; 3],
         /// `average = "report"`.
         report: bool,
+    }
+
+    /// What `prob_water::EmpiricalLobe::fine_grid` gives, for `surface = "empirical"`; else no steps.
+    struct FineGrid {
+        steps: [u32; 3],
+        incidence: f64,
+        in_plane: Vec<f32>,
+        widths: Vec<f32>,
+        whitecaps: bool,
+        /// `across = "slopes"`.
+        slopes: bool,
+        density_rows: u32,
+        density_steps: [f64; 2],
+        densities: Vec<f32>,
     }
 
     /// What `prob_water::FacetTable` holds, where the footprint changes from place to place; else no cells.
@@ -82,6 +100,8 @@ mod ffi {
         fn set_number(self: &mut Options, name: &str, value: f64) -> Result<()>;
         fn set_flag(self: &mut Options, name: &str, value: bool) -> Result<()>;
         fn set_text(self: &mut Options, name: &str, value: &str) -> Result<()>;
+        /// Reads the table of the empirical model that is in force instead of the core's own.
+        fn open_table(self: &mut Options, path: &str) -> Result<()>;
         /// The sea; `varied` is how the footprint changes from place to place, empty where it does not.
         fn configure(self: &Options, varied: &str) -> Result<Box<Water>>;
         /// Every name of the vocabulary.
@@ -94,6 +114,7 @@ mod ffi {
         fn kind(self: &Water) -> Kind;
         fn coefficients(self: &Water) -> Coefficients;
         fn waves(self: &Water) -> Waves;
+        fn fine_grid(self: &Water) -> FineGrid;
         fn facet_rows(self: &Water) -> FacetRows;
         fn drawn_waves(self: &Water) -> DrawnWaves;
         /// Value of a numeric parameter in force, by name; NaN for one that is not set.
@@ -106,10 +127,15 @@ mod ffi {
 }
 
 /// Parameters being collected.
-struct Options(Builder);
+#[derive(Default)]
+struct Options {
+    sea: Builder,
+    /// With the path it was read from.
+    table: Option<(String, Table)>,
+}
 
 fn options() -> Box<Options> {
-    Box::new(Options(Builder::default()))
+    Box::default()
 }
 
 fn vocabulary() -> Vec<String> {
@@ -122,22 +148,41 @@ fn describes_sea(name: &str) -> bool {
 
 impl Options {
     fn set_number(&mut self, name: &str, value: f64) -> Result<(), Error> {
-        self.0.set(name, &Value::Number(value))
+        self.sea.set(name, &Value::Number(value))
     }
 
     fn set_flag(&mut self, name: &str, value: bool) -> Result<(), Error> {
-        self.0.set(name, &Value::Flag(value))
+        self.sea.set(name, &Value::Flag(value))
     }
 
     fn set_text(&mut self, name: &str, value: &str) -> Result<(), Error> {
-        self.0.set(name, &Value::Text(value.into()))
+        self.sea.set(name, &Value::Text(value.into()))
+    }
+
+    fn open_table(&mut self, path: &str) -> Result<(), Error> {
+        self.table = Some((path.into(), Table::open(Path::new(path))?));
+        Ok(())
     }
 
     fn configure(&self, varied: &str) -> Result<Box<Water>, Error> {
-        let surfaces = [Surface::Flat, Surface::Instance, Surface::Ensemble];
-        let water = self.0.parameters()?.configure()?.on(&surfaces)?;
+        let surfaces = [Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
+        let water = self.sea.parameters()?.configure()?.on(&surfaces)?;
+        let surface = water.parameters.surface;
+        let from_afar = matches!(surface, Surface::Ensemble | Surface::Empirical);
+        if from_afar && !varied.is_empty() {
+            let name = water.parameters.get("surface").map_or(String::new(), |name| name.to_string());
+            let allowed = format!("a number with surface = {name}");
+            return Err(Error::OutOfRange { parameter: "footprint", value: varied.into(), allowed });
+        }
+        let table = match &self.table {
+            Some((name, _)) if surface != Surface::Empirical => {
+                let reason = "has no meaning but with surface = empirical".into();
+                return Err(Error::Table { name: name.clone(), reason });
+            }
+            table => table.as_ref().map(|(_, table)| table),
+        };
         let mut lobe = water.lobe;
-        let waves = match water.parameters.surface {
+        let waves = match surface {
             Surface::Flat => Waves::Level,
             Surface::Instance => {
                 // Every place has its own.
@@ -146,18 +191,20 @@ impl Options {
                     if varied.is_empty() { InstanceLobe::new(&water) } else { InstanceLobe::fading(&water) };
                 Waves::Drawn(sea)
             }
-            Surface::Ensemble if varied.is_empty() => {
+            Surface::Ensemble => {
                 let afar = EnsembleLobe::new(&water)?;
                 lobe = afar.sampler;
                 Waves::Afar(afar)
             }
-            Surface::Ensemble => {
-                let allowed = "a number with surface = ensemble".into();
-                return Err(Error::OutOfRange { parameter: "footprint", value: varied.into(), allowed });
+            Surface::Empirical => {
+                let tabled = EmpiricalLobe::new(&water, table.unwrap_or_else(|| Table::standard()))?;
+                lobe = tabled.sampler;
+                Waves::Tabled(tabled)
             }
         };
         let facets = (!varied.is_empty()).then(|| FacetTable::new(&water));
-        Ok(Box::new(Water { water, lobe: lobe.cast(), waves, facets }))
+        let table = self.table.as_ref().map(|(name, _)| name.clone());
+        Ok(Box::new(Water { water, lobe: lobe.cast(), waves, facets, table }))
     }
 }
 
@@ -169,6 +216,8 @@ pub struct Water {
     waves: Waves,
     /// Where the footprint changes from place to place.
     facets: Option<FacetTable>,
+    /// The file of a table that is not the core's own.
+    table: Option<String>,
 }
 
 /// What the facets lie on.
@@ -176,6 +225,7 @@ enum Waves {
     Level,
     Drawn(InstanceLobe),
     Afar(EnsembleLobe),
+    Tabled(EmpiricalLobe),
 }
 
 impl Water {
@@ -184,6 +234,7 @@ impl Water {
             Waves::Level => ffi::Kind::Flat,
             Waves::Drawn(_) => ffi::Kind::Instance,
             Waves::Afar(_) => ffi::Kind::Ensemble,
+            Waves::Tabled(_) => ffi::Kind::Empirical,
         }
     }
 
@@ -243,6 +294,34 @@ impl Water {
         }
     }
 
+    fn fine_grid(&self) -> ffi::FineGrid {
+        let Waves::Tabled(tabled) = &self.waves else {
+            return ffi::FineGrid {
+                steps: [0; 3],
+                incidence: 1.0,
+                in_plane: vec![],
+                widths: vec![],
+                whitecaps: false,
+                slopes: false,
+                density_rows: 0,
+                density_steps: [1.0; 2],
+                densities: vec![],
+            };
+        };
+        let g = tabled.fine_grid();
+        ffi::FineGrid {
+            steps: g.steps,
+            incidence: g.incidence,
+            in_plane: g.in_plane,
+            widths: g.widths,
+            whitecaps: g.whitecaps,
+            slopes: g.slopes,
+            density_rows: g.density_rows,
+            density_steps: g.density_steps,
+            densities: g.densities,
+        }
+    }
+
     fn facet_rows(&self) -> ffi::FacetRows {
         let Some(table) = &self.facets else {
             return ffi::FacetRows { first: 0.0, step: 1.0, scale: 0.0, bounded: false, cells: vec![] };
@@ -277,13 +356,16 @@ impl Water {
     }
 
     fn describe(&self) -> String {
-        let text = self.water.to_string();
-        if self.facets.is_none() {
-            return text;
+        let mut text = self.water.to_string();
+        if self.facets.is_some() {
+            // A word that is refused unless one says for which footprint.
+            let own = format!("\nfootprint = {}\n", self.water.parameters.footprint);
+            text = text.replacen(&own, "\nfootprint = \"varies\"\n", 1);
         }
-        // A word that is refused unless one says for which footprint.
-        let own = format!("\nfootprint = {}\n", self.water.parameters.footprint);
-        text.replacen(&own, "\nfootprint = \"varies\"\n", 1)
+        if let Waves::Tabled(_) = self.waves {
+            text += &format!("\n# table = {}", self.table.as_deref().unwrap_or("the standard one"));
+        }
+        text
     }
 
     fn set_time(&mut self, time: f64) {

@@ -69,7 +69,7 @@ impl MeshOptions {
     fn set(&mut self, name: &str, value: Value) -> Result<(), String> {
         let l = &mut self.layout;
         match (name, &value) {
-            ("surface" | "instances" | "average", _) => {
+            ("surface" | "instances" | "average" | "across", _) => {
                 return Err(format!("{name} = {value} has no meaning here: the shape is one drawn sea"));
             }
             ("radius", Value::Number(x)) => l.radius = *x,

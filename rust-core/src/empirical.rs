@@ -16,8 +16,8 @@
 use crate::cast::Path;
 use crate::characteristic::variances;
 use crate::gaussian_fit::Gaussian;
+use crate::level_water::Spreads;
 use crate::planes::Planes;
-use crate::reference_lobe::Spreads;
 use crate::surface::Surface;
 use crate::waves::{Draws, Numbers, Waves};
 use crate::{Engagement, Error, Exact, Water};

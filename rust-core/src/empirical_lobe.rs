@@ -1,8 +1,8 @@
 //! The report's empirical model of a sea (Eqs. 83-91), from a table: evaluated in nanoseconds, with its uncertainty.
 //!
-//! Configured, it is the table at one wind and one footprint, on a grid so fine that straight lines do between its nodes:
-//! even in the tangents of half the angles theta_i and theta_r, and in what stands for the wind's azimuth there, so that
-//! no angle is computed but the one across the plane.
+//! Configured, it is the table at one wind and one footprint, as a ratio to what the facets would reflect on level water, on
+//! a grid so fine that straight lines do between its nodes: even in the tangents of half the angles theta_i and theta_r,
+//! and in what stands for the wind's azimuth there; and the density of facets along the half vector, on a second grid.
 //!
 //! Beyond the largest angle of incidence in the table it is what it is there, and beyond its angles theta_r the ratio to
 //! what level water would reflect is: [`Estimate::outside`] says so.
@@ -32,23 +32,25 @@
 
 use crate::brdf::Parts;
 use crate::empirical::Moments;
+use crate::level_water::{NOTHING, Spreads, ln_densities};
 use crate::real::Vec3;
-use crate::reference_lobe::{NOTHING, Reference};
+use crate::shadowing::hidden;
 use crate::table::Table;
 use crate::waves::{Draws, Numbers};
-use crate::{Across, Engagement, Error, Lobe, Real, Statistics, Water};
+use crate::{Across, Engagement, Error, Exact, Lobe, Real, Statistics, Water};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::num::NonZeroU32;
 
 /// Steps of the fine grid: over theta_i, the wind's azimuth and theta_r.
-const INCIDENCES: usize = 64;
-const AZIMUTHS: usize = 32;
-const THETAS: usize = 160;
-/// What stands for the horizon, where the closed form ends; radians.
-const LOWEST: f64 = 1.5690;
-/// Nodes on a side of the density of facets, for traced code.
-const DENSITIES: usize = 289;
+const INCIDENCES: usize = 32;
+const AZIMUTHS: usize = 16;
+const THETAS: usize = 80;
+/// Nodes on a side of the density of facets.
+const DENSITIES: usize = 257;
+/// The area shown to both directions is at least this; and the cosine that stands for the horizon.
+const GRAZING: f64 = 1e-6;
+const LOWEST: f64 = 2e-3;
 
 /// f and what is known of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,17 +69,21 @@ pub struct EmpiricalLobe {
     /// Draws directions, and knows their density: the facets of all waves, and whitecaps in proportion to what they
     /// cover. Its `eval` is not this lobe's.
     pub sampler: Lobe<f64>,
-    /// With [`Across::Slopes`] what the facets would reflect on level water.
-    slopes: Option<Reference>,
+    across: Across,
+    spreads: Spreads,
     /// Tangents of half the angles theta_i and theta_r between which the table has nodes.
     incidences: [f64; 2],
     thetas: [f64; 2],
-    /// By theta_i, azimuth and theta_r: the logarithm of the facets' f in the plane over rho, or with `slopes` of its ratio
-    /// to level water's; the share of whitecaps; the logarithm of the mean square of the facets' f over its squared mean,
-    /// or with `slopes` of its ratio to Gaussian slopes'.
+    /// By theta_i, azimuth and theta_r, in the plane: the logarithm of the ratio of the facets' f to what they would reflect
+    /// on level water; the share of whitecaps; the logarithm of the mean square of the facets' f over its squared mean,
+    /// less that of Gaussian slopes.
     in_plane: Vec<[f32; 3]>,
     /// By theta_i and azimuth: sigma, u_sigma, delta, u_delta, radians.
     widths: Vec<[f32; 4]>,
+    /// The logarithm of the facets' density along a half vector, over its tilt angles upwind and crosswind, and the steps
+    /// between nodes, radians.
+    densities: Vec<f32>,
+    steps: [f64; 2],
 }
 
 /// The fine grid as traced code reads it.
@@ -87,13 +93,22 @@ pub struct FineGrid {
     pub steps: [u32; 3],
     /// The largest tan(theta_i/2).
     pub incidence: f64,
-    /// Row by row of theta_r, of every interval what its two ends hold: both logarithms and both shares of whitecaps.
+    /// By theta_i, by intervals of the azimuth and by theta_r, what the interval's two ends hold: logarithms of the ratio
+    /// to level water, and with `whitecaps` their shares.
     pub in_plane: Vec<f32>,
-    /// Row by row of azimuths: sigma and delta.
+    /// By theta_i and intervals of the azimuth: sigma of the two ends, then delta.
     pub widths: Vec<f32>,
-    /// With [`Across::Slopes`] the logarithm of the facets' density along a half vector, over its tilt angles upwind and
-    /// crosswind: nodes on a side, 0 in the middle, the steps between them in radians, and row by row of those upwind.
-    pub densities: Option<(u32, [f64; 2], Vec<f32>)>,
+    /// There are whitecaps.
+    pub whitecaps: bool,
+    /// `across = "slopes"`.
+    pub slopes: bool,
+    /// The logarithm of the facets' density along a half vector, over its tilt angles upwind and crosswind, 0 in the middle:
+    /// nodes on a side, the steps between them in radians, and row by row of those upwind.
+    pub density_rows: u32,
+    /// Radians.
+    pub density_steps: [f64; 2],
+    /// Natural logarithms.
+    pub densities: Vec<f32>,
 }
 
 /// Where a pair of directions lies in the fine grid.
@@ -102,7 +117,13 @@ struct Place<T> {
     rows: [(usize, T); 4],
     /// In a row: the number of the first of two values, and how far towards the second.
     theta: (usize, T),
-    /// theta_r and phi_r of Eq. 88 with the table's sign; sigma's factor of Eq. 89.
+    /// Tangents of theta_i/2, not beyond the table, and theta_r/2.
+    halves: [T; 2],
+    /// Cosine and sine of the wind's azimuth from the plane.
+    wind: [T; 2],
+    /// Horizontal, in the plane, away from the source.
+    forward: [T; 2],
+    /// phi_r of Eq. 88 with the table's sign; sigma's factor of Eq. 89.
     phi: T,
     narrowing: T,
     outside: bool,
@@ -112,43 +133,45 @@ impl EmpiricalLobe {
     /// Of a sea that the table knows; others are refused as by [`Table::check`].
     pub fn new(water: &Water, table: &Table) -> Result<Self, Error> {
         let slice = table.slice(water)?;
-        let reference = Reference::new(water)?;
-        let slopes = water.parameters.across == Across::Slopes;
+        let spreads = Spreads::new(water);
+        let (densities, steps) = ln_densities(&Exact::new(water)?, &spreads, DENSITIES);
         let [incidences, thetas] = slice.ends().map(|ends| ends.map(|angle| (0.5 * angle).tan()));
         // A table for the vertical alone has a grid all the same.
         let incidences = [incidences[0], incidences[1].max(1e-3)];
         let half = |t: f64| 2.0 * t.atan();
-        let theta = |k: usize| half(2.0 * k as f64 / THETAS as f64 - 1.0);
-        let all: Vec<f64> = (0..=THETAS).map(|k| theta(k).clamp(-LOWEST, LOWEST)).collect();
+        let all: Vec<f64> = (0..=THETAS).map(|k| half(2.0 * k as f64 / THETAS as f64 - 1.0)).collect();
         let rows: Vec<_> = (0..(INCIDENCES + 1) * (AZIMUTHS + 1))
             .into_par_iter()
             .map(|row| {
                 let of_source = half(incidences[1] * (row / (AZIMUTHS + 1)) as f64 / INCIDENCES as f64);
                 let azimuth = turn(2.0 * (row % (AZIMUTHS + 1)) as f64 / AZIMUTHS as f64);
                 let (in_plane, widths) = slice.row(of_source, azimuth, &all);
-                let reference = reference.turned(azimuth.to_degrees());
+                let spreads = spreads.turned(azimuth.to_degrees());
                 let source = [-of_source.sin(), 0.0, of_source.cos()];
                 let cells = in_plane.iter().zip(&all).map(|([ratio, whitecaps, square], theta)| {
-                    let o = [theta.sin(), 0.0, theta.cos()];
-                    let spreads = &reference.spreads;
-                    let (near, gaussian) = if slopes {
-                        // Hiding is as in the plane, shadowing is the directions' own.
-                        (spreads.share(source, o), 0.0)
-                    } else {
-                        (reference.eval(source, o), spreads.ln_square(source, o))
-                    };
-                    [(ratio * near).ln().max(NOTHING), *whitecaps, square + gaussian].map(|x| x as f32)
+                    // At the horizon all is hidden: a little above it stands for that.
+                    let o = [theta.sin(), 0.0, theta.cos().max(LOWEST)];
+                    [(ratio * spreads.share(source, o)).ln(), *whitecaps, *square].map(|x| x as f32)
                 });
                 (cells.collect::<Vec<_>>(), widths.map(|x| x as f32))
             })
             .collect();
         let widths: Vec<[f32; 4]> = rows.iter().map(|(_, widths)| *widths).collect();
         let in_plane: Vec<[f32; 3]> = rows.into_iter().flat_map(|(cells, _)| cells).collect();
-        let mut sampler = reference.sampler(water);
+        let mut sampler = spreads.sampler(water);
         // As many whitecaps as a source overhead meets.
         sampler.whitecap_fraction = f64::from(in_plane[THETAS / 2][1]);
-        let slopes = slopes.then_some(reference);
-        Ok(Self { sampler, slopes, incidences, thetas, in_plane, widths })
+        Ok(Self {
+            sampler,
+            across: water.parameters.across,
+            spreads,
+            incidences,
+            thetas,
+            in_plane,
+            widths,
+            densities,
+            steps,
+        })
     }
 
     /// f, 1/sr (Eq. 90), for unit vectors to source and observer; 0 at or below the horizon.
@@ -164,22 +187,72 @@ impl EmpiricalLobe {
             return zero;
         }
         let place = self.place(i, o);
-        let [level, whitecaps] = place.in_plane(&self.in_plane, |cell| [cell[0], cell[1]]);
+        let [ratio, whitecaps] = place.in_plane(&self.in_plane, |cell| [cell[0], cell[1]]);
         let mut f = zero;
         if parts.facets {
-            f = if let Some(reference) = &self.slopes {
-                let [i, o] = [i, o].map(|v| v.map(Real::to_f64));
-                T::of(self.reflectance(i, o) * reference.eval_level(i, o)) * level.exp()
-            } else {
+            let (density, visible) = self.level(i, o, &place);
+            let mut exponent = ratio + density;
+            if self.across == Across::Report {
                 let [sigma, delta] = place.around(&self.widths, |cell| [cell[0], cell[2]]);
                 let x = (place.phi - delta) / (sigma * place.narrowing);
-                T::of(self.reflectance(i, o)) * (level - x * x).exp()
-            };
+                exponent = exponent - x * x;
+            }
+            f = self.reflectance(i, o) * visible * exponent.exp();
         }
         if parts.whitecaps {
             f = f + T::of(self.sampler.whitecap_brdf) * whitecaps;
         }
         f
+    }
+
+    /// What the facets would reflect on level water, over rho, as the logarithm of their density and the rest: towards the
+    /// observer with [`Across::Slopes`], else towards what is in the plane of it.
+    fn level<T: Real>(&self, i: Vec3<T>, o: Vec3<T>, place: &Place<T>) -> (T, T) {
+        let one = T::of(1.0);
+        let facets = &self.sampler.facets;
+        let (slope, cos, sin) = match self.across {
+            Across::Slopes => {
+                let [x, y, z] = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
+                let [c, s] = [facets.cos_wind, facets.sin_wind].map(T::of);
+                let lean = -one / T::max(z, T::of(1e-12));
+                let slope = [lean * (x * c + y * s), lean * (y * c - x * s)];
+                let sine = |z: T| T::max(one - z * z, T::of(0.0)).sqrt();
+                (slope, [i[2], o[2]], [sine(i[2]), sine(o[2])])
+            }
+            Across::Report => {
+                // By half angles: the half vector leans by half the difference of theta_r and theta_i.
+                let [a, b] = place.halves;
+                let lean = (a - b) / (one + a * b);
+                let over = place.halves.map(|t| one / (one + t * t));
+                let cos =
+                    [0, 1].map(|k| T::max((one - place.halves[k] * place.halves[k]) * over[k], T::of(0.0)));
+                let sin = [0, 1].map(|k| T::of(2.0) * place.halves[k].abs() * over[k]);
+                ([lean * place.wind[0], -lean * place.wind[1]], cos, sin)
+            }
+        };
+        let mut area = cos[0] * cos[1];
+        if facets.shadowing {
+            let sigma = T::of(facets.sigma_shadow);
+            area = area + cos[1] * hidden(cos[0], sigma * sin[0]) + cos[0] * hidden(cos[1], sigma * sin[1]);
+        }
+        (self.ln_density(slope), one / T::max(area, T::of(GRAZING)))
+    }
+
+    /// The logarithm of the facets' density along a half vector of a slope upwind and crosswind.
+    fn ln_density<T: Real>(&self, slope: [T; 2]) -> T {
+        let middle = 0.5 * (DENSITIES - 1) as f64;
+        let [u, c] =
+            [0, 1].map(|k| Real::atan2(slope[k], T::of(1.0)) * T::of(1.0 / self.steps[k]) + T::of(middle));
+        let end = T::of(2.0 * middle);
+        let inside = T::of(0.0).below(u) && u.below(end) && T::of(0.0).below(c) && c.below(end);
+        if !inside {
+            return T::of(NOTHING);
+        }
+        let ((j, s), (k, t)) = (split(u, DENSITIES - 1), split(c, DENSITIES - 1));
+        let node = |n: usize| T::of(f64::from(self.densities[n]));
+        let at = |n: usize| node(n) + t * (node(n + 1) - node(n));
+        let (near, far) = (at(j * DENSITIES + k), at((j + 1) * DENSITIES + k));
+        near + s * (far - near)
     }
 
     /// f with its standard uncertainty (Eqs. 90-91), for unit vectors to source and observer.
@@ -188,29 +261,34 @@ impl EmpiricalLobe {
             return Estimate { mean: 0.0, std: 0.0, outside: false };
         }
         let place = self.place(i, o);
-        let [level, whitecaps, square] = place.in_plane(&self.in_plane, |cell| *cell);
-        let rho = self.reflectance(i, o);
-        let brdf = |facets: f64, ln_square: f64| {
-            let facets2 = facets * facets * ln_square.max(0.0).exp();
-            Moments { facets, facets2, whitecaps }.brdf(rho, self.sampler.whitecap_brdf)
-        };
-        let [mean, std] = match &self.slopes {
-            Some(reference) => {
-                let facets = level.exp() * reference.eval_level(i, o);
-                brdf(facets, square + reference.spreads.ln_square(i, o))
-            }
-            None => {
+        let (moments, rho) = self.moments(i, o, &place);
+        let [mean, std] = match self.across {
+            Across::Slopes => moments.brdf(rho, self.sampler.whitecap_brdf),
+            Across::Report => {
                 let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths, |cell| *cell);
                 let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
                 let x = (place.phi - delta) / sigma;
-                let facets = (level - x * x).exp();
-                let [mean, std] = brdf(facets, square);
+                let fall = (-x * x).exp();
+                let facets = fall * moments.facets;
+                let moments = Moments { facets, facets2: fall * fall * moments.facets2, ..moments };
+                let [mean, std] = moments.brdf(rho, self.sampler.whitecap_brdf);
                 // Of what facets reflect, by the spreads of the lobe's width and offset.
                 let (wider, aside) = (2.0 * x * x * u_sigma / sigma, 2.0 * x * u_delta / sigma);
                 [mean, std.hypot(rho * facets * wider.hypot(aside))]
             }
         };
         Estimate { mean, std, outside: place.outside }
+    }
+
+    /// Where the lobe across the plane peaks, or with [`Across::Slopes`] towards the observer itself; and rho.
+    fn moments(&self, i: [f64; 3], o: [f64; 3], place: &Place<f64>) -> (Moments, f64) {
+        let [ratio, whitecaps, square] = place.in_plane(&self.in_plane, |cell| *cell);
+        let (density, visible) = self.level(i, o, place);
+        let seen = if self.across == Across::Report { place.view() } else { o };
+        let facets = visible * (ratio + density).exp();
+        let square = (square + self.spreads.ln_square(i, seen)).max(0.0).exp();
+        let moments = Moments { facets, facets2: facets * facets * square, whitecaps };
+        (moments, self.reflectance(i, o))
     }
 
     /// f drawn through the table's spreads, as single surfaces would show it: a whitecap, or facets whose lobe across the
@@ -231,21 +309,15 @@ impl EmpiricalLobe {
             return Statistics { whitecap: 0.0, ..Statistics::of(values, limits) };
         }
         let place = self.place(i, o);
-        let [level, whitecaps, square] = place.in_plane(&self.in_plane, |cell| *cell);
-        let (rho, foam) = (self.reflectance(i, o), self.sampler.whitecap_brdf);
+        let (Moments { facets, facets2, whitecaps }, rho) = self.moments(i, o, &place);
+        let foam = self.sampler.whitecap_brdf;
         let open = (1.0 - whitecaps).max(1e-6);
-        // Where the lobe peaks: the mean of the facets' f over rho, and of its square over the squared mean.
-        let (mean, square, lobe) = match &self.slopes {
-            Some(reference) => {
-                (level.exp() * reference.eval_level(i, o), square + reference.spreads.ln_square(i, o), None)
-            }
-            None => {
-                let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths, |cell| *cell);
-                let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
-                let single = (sigma * sigma - 2.0 * u_delta * u_delta).max(0.04 * sigma * sigma).sqrt();
-                (level.exp(), square, Some(([single, u_sigma], [place.phi - delta, u_delta])))
-            }
-        };
+        let lobe = (self.across == Across::Report).then(|| {
+            let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths, |cell| *cell);
+            let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
+            let single = (sigma * sigma - 2.0 * u_delta * u_delta).max(0.04 * sigma * sigma).sqrt();
+            ([single, u_sigma], [place.phi - delta, u_delta])
+        });
         let draw = |instance: u64| {
             let mut numbers = Numbers::new(Draws::Sobol, seed, instance);
             let chance = numbers.next();
@@ -261,9 +333,10 @@ impl EmpiricalLobe {
         let all: Vec<_> = (0..u64::from(draws.get())).map(draw).collect();
         let [first, second] =
             [1, 2].map(|power| all.iter().map(|(_, _, falls)| falls[1].powi(power)).sum::<f64>() / count);
-        let height = mean / (open * first.max(f64::MIN_POSITIVE));
-        let spread =
-            (square.max(0.0).exp() * open * first * first / second.max(f64::MIN_POSITIVE)).max(1.0).ln();
+        let height = facets / (open * first.max(f64::MIN_POSITIVE));
+        // Log-normal heights with the mean square that the table wants.
+        let square = if facets > 0.0 { facets2 / (facets * facets) } else { 1.0 };
+        let spread = (square * open * first * first / second.max(f64::MIN_POSITIVE)).max(1.0).ln();
         for (value, (foamy, normal, falls)) in values.iter_mut().zip(&all) {
             let facets = || rho * height * (spread.sqrt() * normal - 0.5 * spread).exp() * falls[0];
             *value = if *foamy { foam } else { facets() };
@@ -278,10 +351,11 @@ impl EmpiricalLobe {
         engagement.ways().map(|[i, o]| self.estimate(i, o)).collect()
     }
 
-    fn reflectance<T: Real>(&self, i: Vec3<T>, o: Vec3<T>) -> f64 {
-        let [i, o] = [i, o].map(|v| v.map(Real::to_f64));
-        let half = 0.5 * (0..3).map(|k| (i[k] + o[k]).powi(2)).sum::<f64>().sqrt();
-        self.sampler.facets.reflectance.eval(half.min(1.0))
+    /// rho between two directions (Eqs. 61-63).
+    fn reflectance<T: Real>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
+        let half = T::of(0.5) * (0..3).fold(T::of(0.0), |sum, k| sum + (i[k] + o[k]) * (i[k] + o[k])).sqrt();
+        let facets = &self.sampler.facets.reflectance;
+        T::of(facets.eval(half.to_f64().min(1.0)))
     }
 
     #[inline]
@@ -318,6 +392,9 @@ impl EmpiricalLobe {
             !(low - slack..=high + slack).contains(&x.to_f64())
         };
         Place {
+            halves: [tan_i, tan_r],
+            wind: [cos, sin],
+            forward: [x, y],
             rows: [
                 (row, near * left),
                 (row + 1, near * t),
@@ -333,16 +410,30 @@ impl EmpiricalLobe {
 
     /// For traced code.
     pub fn fine_grid(&self) -> FineGrid {
-        let pairs = self.in_plane.chunks(THETAS + 1).flat_map(|row| row.windows(2));
+        let whitecaps = self.in_plane.iter().any(|cell| cell[1] > 0.0);
+        // What is needed together lies together, so that a look into memory finds it.
+        let ends = (0..(INCIDENCES + 1) * AZIMUTHS).map(|k| {
+            let row = k / AZIMUTHS * (AZIMUTHS + 1) + k % AZIMUTHS;
+            [row, row + 1]
+        });
+        let in_plane = ends.clone().flat_map(|rows| {
+            (0..=THETAS).flat_map(move |theta| {
+                let at = |n: usize| rows.map(|row| self.in_plane[row * (THETAS + 1) + theta][n]);
+                let shares = whitecaps.then(|| at(1));
+                at(0).into_iter().chain(shares.into_iter().flatten())
+            })
+        });
+        let widths = ends.clone().flat_map(|rows| [0, 2].map(|n| rows.map(|row| self.widths[row][n])));
         FineGrid {
             steps: [INCIDENCES as u32, AZIMUTHS as u32, THETAS as u32],
             incidence: self.incidences[1],
-            in_plane: pairs.flat_map(|ends| [ends[0][0], ends[1][0], ends[0][1], ends[1][1]]).collect(),
-            widths: self.widths.iter().flat_map(|cell| [cell[0], cell[2]]).collect(),
-            densities: self.slopes.as_ref().map(|reference| {
-                let (cells, steps) = reference.ln_densities(DENSITIES);
-                (DENSITIES as u32, steps, cells)
-            }),
+            in_plane: in_plane.collect(),
+            widths: widths.flatten().collect(),
+            whitecaps,
+            slopes: self.across == Across::Slopes,
+            density_rows: DENSITIES as u32,
+            density_steps: self.steps,
+            densities: self.densities.clone(),
         }
     }
 }
@@ -364,6 +455,15 @@ fn split<T: Real>(x: T, steps: usize) -> (usize, T) {
 fn turn(around: f64) -> f64 {
     let cos = 1.0 - around;
     (1.0 - cos.abs()).atan2(cos)
+}
+
+impl Place<f64> {
+    /// The unit vector in the plane at theta_r.
+    fn view(&self) -> [f64; 3] {
+        let t = self.halves[1];
+        let (sin, cos) = (2.0 * t / (1.0 + t * t), (1.0 - t * t) / (1.0 + t * t));
+        [sin * self.forward[0], sin * self.forward[1], cos]
+    }
 }
 
 impl<T: Real> Place<T> {

@@ -63,13 +63,14 @@ mod facet_table;
 mod gaussian_fit;
 pub mod grid;
 mod instance_lobe;
+mod level_water;
 pub mod mesh;
 pub mod optics;
 mod parameters;
 pub mod planes;
 mod quadrature;
 pub mod real;
-mod reference_lobe;
+
 pub mod sampling;
 pub mod scenario;
 pub mod shadowing;

@@ -34,8 +34,8 @@
 
 use crate::empirical::{Full, Moments, Node};
 use crate::error::refuse;
+use crate::level_water::Spreads;
 use crate::parameters::MOST_INSTANCES;
-use crate::reference_lobe::Spreads;
 use crate::vocabulary::{Builder, Value};
 use crate::{Error, Parameters, Surface, Water, Wind};
 use rayon::prelude::*;

@@ -1,18 +1,17 @@
-//! What a table is interpolated relative to: the lobe of a sea's facets on all its drawn waves together, as if they lay
+//! What a table is interpolated relative to: what a sea's facets would reflect if those of all its drawn waves lay together
 //! on level water. The mean over drawn waves is close to it, and their ratio changes slowly with wind, footprint and
 //! directions, where the mean itself changes by orders of magnitude.
 
 use crate::brdf::{Facets, up};
 use crate::characteristic::variances;
 use crate::exact::Exact;
-use crate::facet_density::{self, FacetDensity};
+use crate::facet_density;
 use crate::optics::Reflectance;
 use crate::shadowing::hidden;
 use crate::surface::normal;
-use crate::{Error, Lobe, Water};
-use glam::{DVec2, DVec3};
+use crate::{Lobe, Water};
+use glam::DVec2;
 use std::f64::consts::SQRT_2;
-use std::sync::Arc;
 
 /// The logarithm of next to nothing, in float32.
 pub(crate) const NOTHING: f64 = -87.0;
@@ -46,6 +45,17 @@ impl Spreads {
     fn to_wind(self, v: DVec2) -> DVec2 {
         let wind = DVec2::new(self.all.cos_wind, self.all.sin_wind);
         DVec2::new(v.dot(wind), v.dot(wind.perp()))
+    }
+
+    fn to_world(self, v: DVec2) -> DVec2 {
+        let wind = DVec2::new(self.all.cos_wind, self.all.sin_wind);
+        v.x * wind + v.y * wind.perp()
+    }
+
+    /// Draws directions roughly as the sea reflects, with its own reflectance and whitecaps.
+    pub fn sampler(&self, water: &Water) -> Lobe<f64> {
+        let reflectance = water.lobe.facets.reflectance;
+        Lobe { facets: Facets { reflectance, ..self.all }, ..water.lobe }
     }
 
     /// Smith's term for a direction above the horizon: how much of what it sees drawn waves hide.
@@ -83,69 +93,20 @@ impl Spreads {
     }
 }
 
-/// The lobe of a sea.
-#[derive(Debug, Clone)]
-pub(crate) struct Reference {
-    pub spreads: Spreads,
-    /// `None` where there are no waves: then the facets' own.
-    density: Option<Arc<FacetDensity>>,
-}
-
-impl Reference {
-    /// Of a sea with drawn waves; refused as by [`Exact::new`].
-    pub fn new(water: &Water) -> Result<Self, Error> {
-        let density = Exact::new(water)?.facet_density().map(Arc::new);
-        Ok(Self { spreads: Spreads::new(water), density })
-    }
-
-    /// Draws directions roughly as the lobe reflects, with the sea's own reflectance and whitecaps.
-    pub fn sampler(&self, water: &Water) -> Lobe<f64> {
-        let reflectance = water.lobe.facets.reflectance;
-        Lobe { facets: Facets { reflectance, ..self.spreads.all }, ..water.lobe }
-    }
-
-    /// The same sea under a wind from another azimuth, in degrees.
-    pub fn turned(&self, degrees: f64) -> Self {
-        Self { spreads: self.spreads.turned(degrees), density: self.density.clone() }
-    }
-
-    /// The density of facets along the half vector of two directions, with the 1/4 of Eq. 56.
-    pub fn density(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
-        let half = DVec3::from(i) + DVec3::from(o);
-        match &self.density {
-            Some(density) => density.at(self.spreads.to_wind(-half.truncate() / half.z)).density,
-            None => self.spreads.all.density_along(half.normalize().into(), up()),
-        }
-    }
-
-    /// Logarithms of the density over the half vector's tilt angles upwind and crosswind, 0 in the middle, so many nodes on a
-    /// side, row by row of those upwind; and the steps between them, radians.
-    pub fn ln_densities(&self, rows: usize) -> (Vec<f32>, [f64; 2]) {
-        let all = &self.spreads.all;
-        let middle = 0.5 * (rows - 1) as f64;
-        let steps = [all.sigma_u, all.sigma_c].map(|sigma| facet_density::end(sigma) / middle);
-        let at = |n: usize| {
-            let [u, c] = [(n / rows) as f64, (n % rows) as f64].map(|k| k - middle);
-            let slope = DVec2::new((u * steps[0]).tan(), (c * steps[1]).tan());
-            let density = match &self.density {
-                Some(density) => density.at(slope).density,
-                None => {
-                    let wind = DVec2::new(all.cos_wind, all.sin_wind);
-                    all.density_along(normal((slope.x * wind + slope.y * wind.perp()).into()), up())
-                }
-            };
-            density.ln().max(NOTHING) as f32
+/// Logarithms of the density of facets along a half vector, with the 1/4 of Eq. 56, over its tilt angles upwind and
+/// crosswind, 0 in the middle: so many nodes on a side, row by row of those upwind; and the steps between them, radians.
+pub(crate) fn ln_densities(exact: &Exact, spreads: &Spreads, rows: usize) -> (Vec<f32>, [f64; 2]) {
+    let table = exact.facet_density();
+    let middle = 0.5 * (rows - 1) as f64;
+    let steps = [spreads.all.sigma_u, spreads.all.sigma_c].map(|sigma| facet_density::end(sigma) / middle);
+    let at = |n: usize| {
+        let [u, c] = [(n / rows) as f64, (n % rows) as f64].map(|k| k - middle);
+        let slope = DVec2::new((u * steps[0]).tan(), (c * steps[1]).tan());
+        let density = match &table {
+            Some(table) => table.at(slope).density,
+            None => spreads.all.density_along(normal(spreads.to_world(slope).into()), up()),
         };
-        ((0..rows * rows).map(at).collect(), steps)
-    }
-
-    /// f of the facets over rho on level water, 1/sr.
-    pub fn eval_level(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
-        self.density(i, o) * self.spreads.shadowing(i, o)
-    }
-
-    /// The same less what drawn waves hide.
-    pub fn eval(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
-        self.eval_level(i, o) * self.spreads.share(i, o)
-    }
+        density.ln().max(NOTHING) as f32
+    };
+    ((0..rows * rows).map(at).collect(), steps)
 }

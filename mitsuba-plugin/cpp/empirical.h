@@ -1,0 +1,170 @@
+/**
+ * The empirical model as a Dr.Jit expression, `surface = "empirical"`: the twin of the Rust core's empirical_lobe.rs
+ * over the same fine grid. Directions are drawn by the Lobe beside it.
+ */
+#pragma once
+
+#include "lobe.h"
+#include <algorithm>
+#include <mitsuba/core/fwd.h>
+#include <vector>
+
+namespace prob_water {
+
+template <typename Float_> struct Tabled {
+    using Float = Float_;
+    using Mask = drjit::mask_t<Float>;
+    using UInt32 = drjit::uint32_array_t<Float>;
+    using Vector3f = mitsuba::Vector<Float, 3>;
+    using Buffer = mitsuba::DynamicBuffer<Float>;
+    /// What the ends of an interval of the azimuth hold, of one quantity and of two.
+    using Ends = drjit::Array<Float, 2>;
+    using TwoEnds = drjit::Array<Float, 4>;
+
+    /// Over tan(theta_i/2), the stand-in of the azimuth and tan(theta_r/2); 0 for another surface.
+    uint32_t incidences = 0, azimuths = 0, thetas = 0;
+    bool whitecaps = false, slopes = false;
+    /// Nodes on a side of the density of facets.
+    uint32_t rows = 0;
+    /// The largest tan(theta_i/2), and steps over it; steps of the density over tilt angles.
+    Float cos_wind, sin_wind, last, inv_step, inv_step_u, inv_step_c;
+    Buffer in_plane, widths, densities;
+
+    Tabled(const FineGrid &g, const Coefficients &c)
+        : incidences(g.steps[0]), azimuths(g.steps[1]), thetas(g.steps[2]), whitecaps(g.whitecaps), slopes(g.slopes),
+          rows(g.density_rows) {
+        if (!incidences)
+            return;
+        auto data = [](double x) { return drjit::opaque<Float>((float) x); };
+        cos_wind = data(c.cos_wind);
+        sin_wind = data(c.sin_wind);
+        last = data(g.incidence);
+        inv_step = data(incidences / g.incidence);
+        in_plane = drjit::load<Buffer>(g.in_plane.data(), g.in_plane.size());
+        widths = drjit::load<Buffer>(g.widths.data(), g.widths.size());
+        inv_step_u = data(1. / g.density_steps[0]);
+        inv_step_c = data(1. / g.density_steps[1]);
+        // Of every node itself and the next of its row.
+        std::vector<float> pairs(2 * g.densities.size());
+        for (size_t k = 0; k < g.densities.size(); ++k) {
+            pairs[2 * k] = g.densities[k];
+            pairs[2 * k + 1] = g.densities[std::min(k + 1, g.densities.size() - 1)];
+        }
+        densities = drjit::load<Buffer>(pairs.data(), pairs.size());
+    }
+
+    DRJIT_STRUCT(Tabled, cos_wind, sin_wind, last, inv_step, inv_step_u, inv_step_c, in_plane, widths, densities)
+
+    /// f cos(theta_o) of some of its parts.
+    Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, Parts parts) const {
+        namespace dr = drjit;
+        constexpr float Small = Lobe<Float>::Small;
+        Mask lit = i.z() > 0.f && o.z() > 0.f;
+        // Away from the source; with the wind where the source is overhead.
+        Float flat2 = dr::fmadd(i.x(), i.x(), i.y() * i.y());
+        Mask overhead = flat2 < 1e-12f;
+        Float x = dr::select(overhead, cos_wind, -i.x()), y = dr::select(overhead, sin_wind, -i.y()),
+              inv = dr::select(overhead, 1.f, dr::rsqrt(larger(flat2, 1e-12f))),
+              tan_i = smaller(flat2 * inv * dr::rcp(1.f + larger(i.z(), 0.f)), last),
+              // The wind's azimuth from there, to either side.
+              cos = dr::fmadd(cos_wind, x, sin_wind * y), sin = dr::fmsub(sin_wind, x, cos_wind * y),
+              around = dr::fnmadd(cos, dr::rcp(larger(dr::abs(cos) + dr::abs(sin), Lobe<Float>::Tiny)), 1.f),
+              forward = dr::fmadd(o.x(), x, o.y() * y) * inv, o_z = larger(o.z(), 0.f),
+              tan_r = forward * dr::rcp(larger(dr::sqrt(dr::fmadd(forward, forward, o_z * o_z)) + o_z, Small));
+
+        auto [a, s] = split(tan_i * inv_step, incidences);
+        auto [b, t] = split(.5f * azimuths * around, azimuths);
+        auto [k, r] = split(dr::fmadd(.5f * thetas, tan_r, .5f * thetas), thetas);
+        UInt32 cell = a * azimuths + b, row = cell * (thetas + 1) + k;
+        // Between two angles theta_i, and two theta_r.
+        auto across = [&](auto near, const auto &far) { return dr::fmadd(decltype(near)(s), far - near, near); };
+        auto along = [&](auto packet, const UInt32 &row) {
+            using Packet = decltype(packet);
+            Packet low = dr::gather<Packet>(in_plane, row), high = dr::gather<Packet>(in_plane, row + 1u);
+            return dr::fmadd(Packet(r), high - low, low);
+        };
+        UInt32 next = row + azimuths * (thetas + 1);
+        auto plane = [&](auto packet) { return across(along(packet, row), along(packet, next)); };
+        auto between = [&](const Float &from, const Float &to) { return Float(dr::fmadd(t, to - from, from)); };
+        Float level, foam;
+        if (whitecaps) {
+            TwoEnds ends = plane(TwoEnds());
+            level = between(ends[0], ends[1]);
+            foam = between(ends[2], ends[3]);
+        } else {
+            Ends ends = plane(Ends());
+            level = between(ends[0], ends[1]);
+        }
+
+        Float f = 0.f;
+        if (parts.facets) {
+            Float rho = lobe.template reflectance<Float>(smaller(.5f * dr::norm(i + o), 1.f));
+            if (slopes) {
+                Vector3f h = i + o;
+                Float lean = -dr::rcp(larger(h.z(), 1e-12f));
+                f = rho * dr::exp(level + ln_density(lean * dr::fmadd(h.x(), cos_wind, h.y() * sin_wind),
+                                                     lean * dr::fmsub(h.y(), cos_wind, h.x() * sin_wind))) *
+                    visible(lobe, larger(i.z(), 0.f), lobe.sine(i.z()), o_z, lobe.sine(o.z()));
+            } else {
+                TwoEnds w = across(dr::gather<TwoEnds>(widths, cell), dr::gather<TwoEnds>(widths, cell + azimuths));
+                // Eqs. 87-89 by half angles; both components that make phi are 1 + tan^2 times as long.
+                Float tan2 = tan_i * tan_i, one = 1.f + tan2, aside = dr::fmsub(o.y(), x, o.x() * y) * inv * one,
+                      specular = dr::abs(dr::fmadd(2.f * tan_i, forward, (1.f - tan2) * o_z)), abs = dr::abs(aside),
+                      most = larger(larger(abs, specular), Small),
+                      phi = Lobe<Float>::template angle<Float>(aside, specular, abs, most, dr::rcp(most)),
+                      off = dr::select(sin < 0.f, -phi, phi) - between(w[2], w[3]), lower = smaller(tan_i, tan_r),
+                      narrow = between(w[0], w[1]) * dr::fnmadd(tan_i, lower, 1.f),
+                      x2 = off * off * one * dr::fmadd(lower, lower, 1.f) * dr::rcp(narrow * narrow);
+                // In the plane: the half vector leans by half the difference of theta_r and theta_i.
+                Float over_i = dr::rcp(one), over_r = dr::rcp(dr::fmadd(tan_r, tan_r, 1.f)),
+                      lean = (tan_i - tan_r) * dr::rcp(dr::fmadd(tan_i, tan_r, 1.f)) * inv;
+                f = rho * dr::exp(level + ln_density(lean * cos, -lean * sin) - x2) *
+                    visible(lobe, (1.f - tan2) * over_i, 2.f * tan_i * over_i,
+                            larger(dr::fnmadd(tan_r, tan_r, 1.f) * over_r, 0.f), 2.f * dr::abs(tan_r) * over_r);
+            }
+        }
+        if (parts.whitecaps && whitecaps)
+            f = dr::fmadd(lobe.whitecap_brdf, foam, f);
+        return dr::select(lit, f * o_z, 0.f);
+    }
+
+private:
+    /// The logarithm of the facets' density along a half vector of a slope upwind and crosswind.
+    Float ln_density(const Float &slope_u, const Float &slope_c) const {
+        namespace dr = drjit;
+        float middle = .5f * (rows - 1), end = rows - 1.f;
+        Float u = dr::fmadd(slope_u * Lobe<Float>::atan_over(slope_u * slope_u), inv_step_u, middle),
+              c = dr::fmadd(slope_c * Lobe<Float>::atan_over(slope_c * slope_c), inv_step_c, middle);
+        Mask inside = u > 0.f && c > 0.f && u < end && c < end;
+        auto [j, s] = split(dr::select(inside, u, 0.f), rows - 1);
+        auto [k, t] = split(dr::select(inside, c, 0.f), rows - 1);
+        UInt32 node = j * rows + k;
+        Ends near = dr::gather<Ends>(densities, node), far = dr::gather<Ends>(densities, node + rows);
+        Ends mixed = dr::fmadd(Ends(s), far - near, near);
+        return dr::select(inside, dr::fmadd(t, mixed[1] - mixed[0], mixed[0]), Nothing);
+    }
+
+    /// G/(cos theta_i cos theta_r) on level water.
+    static Float visible(const Lobe<Float> &lobe, const Float &cos_i, const Float &sin_i, const Float &cos_o,
+                         const Float &sin_o) {
+        namespace dr = drjit;
+        Float area = cos_i * cos_o, over = 1.f;
+        if (lobe.shadowing) {
+            auto [h_i, h_o] = lobe.hidden(cos_i, lobe.sigma_shadow * sin_i, cos_o, lobe.sigma_shadow * sin_o);
+            over = h_i.over * h_o.over;
+            area = dr::fmadd(area, over, dr::fmadd(cos_o * h_i.area, h_o.over, cos_i * h_o.area * h_i.over));
+        }
+        return over * dr::rcp(larger(area, over * Grazing));
+    }
+
+    /// As in the core's empirical_lobe.rs and level_water.rs.
+    static constexpr float Nothing = -87.f, Grazing = 1e-6f;
+
+    /// A place on an axis of so many steps: the step and how far along it.
+    static std::pair<UInt32, Float> split(const Float &x, uint32_t steps) {
+        UInt32 k = drjit::minimum(UInt32(x), steps - 1);
+        return { k, x - Float(k) };
+    }
+};
+
+} // namespace prob_water
