@@ -16,23 +16,24 @@ template <typename Float_> struct Tabled {
     using Mask = drjit::mask_t<Float>;
     using UInt32 = drjit::uint32_array_t<Float>;
     using Vector3f = mitsuba::Vector<Float, 3>;
-    using Buffer = mitsuba::DynamicBuffer<Float>;
-    /// What the ends of an interval of the azimuth hold, of one quantity and of two.
-    using Ends = drjit::Array<Float, 2>;
-    using TwoEnds = drjit::Array<Float, 4>;
+    /// What the corners of cells hold, of one quantity and of two, in half precision, to which the core has rounded them.
+    using Half = drjit::float16_array_t<Float>;
+    using Buffer = mitsuba::DynamicBuffer<Half>;
+    using Four = drjit::Array<Half, 4>;
+    using Eight = drjit::Array<Half, 8>;
 
     /// Over tan(theta_i/2), the stand-in of the azimuth and tan(theta_r/2); 0 for another surface.
     uint32_t incidences = 0, azimuths = 0, thetas = 0;
     bool whitecaps = false, slopes = false;
-    /// Nodes on a side of the density of facets.
-    uint32_t rows = 0;
-    /// The largest tan(theta_i/2), and steps over it; steps of the density over tilt angles.
-    Float cos_wind, sin_wind, last, inv_step, inv_step_u, inv_step_c;
+    /// Steps on a side of the density of facets.
+    uint32_t steps = 0;
+    /// The largest tan(theta_i/2), and steps over it; standard deviations of tilt angles, and steps over those.
+    Float cos_wind, sin_wind, last, inv_step, inv_sigma_u, inv_sigma_c, inv_step_u, inv_step_c;
     Buffer in_plane, widths, densities;
 
     Tabled(const FineGrid &g, const Coefficients &c)
         : incidences(g.steps[0]), azimuths(g.steps[1]), thetas(g.steps[2]), whitecaps(g.whitecaps), slopes(g.slopes),
-          rows(g.density_rows) {
+          steps(g.density_steps) {
         if (!incidences)
             return;
         auto data = [](double x) { return drjit::opaque<Float>((float) x); };
@@ -40,20 +41,21 @@ template <typename Float_> struct Tabled {
         sin_wind = data(c.sin_wind);
         last = data(g.incidence);
         inv_step = data(incidences / g.incidence);
-        in_plane = drjit::load<Buffer>(g.in_plane.data(), g.in_plane.size());
-        widths = drjit::load<Buffer>(g.widths.data(), g.widths.size());
-        inv_step_u = data(1. / g.density_steps[0]);
-        inv_step_c = data(1. / g.density_steps[1]);
-        // Of every node itself and the next of its row.
-        std::vector<float> pairs(2 * g.densities.size());
-        for (size_t k = 0; k < g.densities.size(); ++k) {
-            pairs[2 * k] = g.densities[k];
-            pairs[2 * k + 1] = g.densities[std::min(k + 1, g.densities.size() - 1)];
-        }
-        densities = drjit::load<Buffer>(pairs.data(), pairs.size());
+        inv_sigma_u = data(1. / g.sigmas[0]);
+        inv_sigma_c = data(1. / g.sigmas[1]);
+        inv_step_u = data(1. / g.density_step[0]);
+        inv_step_c = data(1. / g.density_step[1]);
+        auto halves = [](const auto &cells) {
+            std::vector<drjit::half> halves(cells.begin(), cells.end());
+            return drjit::load<Buffer>(halves.data(), halves.size());
+        };
+        in_plane = halves(g.in_plane);
+        widths = halves(g.widths);
+        densities = halves(g.densities);
     }
 
-    DRJIT_STRUCT(Tabled, cos_wind, sin_wind, last, inv_step, inv_step_u, inv_step_c, in_plane, widths, densities)
+    DRJIT_STRUCT(Tabled, cos_wind, sin_wind, last, inv_step, inv_sigma_u, inv_sigma_c, inv_step_u, inv_step_c, in_plane,
+                 widths, densities)
 
     /// f cos(theta_o) of some of its parts.
     Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, Parts parts) const {
@@ -75,25 +77,25 @@ template <typename Float_> struct Tabled {
         auto [a, s] = split(tan_i * inv_step, incidences);
         auto [b, t] = split(.5f * azimuths * around, azimuths);
         auto [k, r] = split(dr::fmadd(.5f * thetas, tan_r, .5f * thetas), thetas);
-        UInt32 cell = a * azimuths + b, row = cell * (thetas + 1) + k;
-        // Between two angles theta_i, and two theta_r.
-        auto across = [&](auto near, const auto &far) { return dr::fmadd(decltype(near)(s), far - near, near); };
-        auto along = [&](auto packet, const UInt32 &row) {
+        UInt32 cell = a * azimuths + b, corners = cell * thetas + k;
+        // Between two angles theta_i, and of the four corners about the azimuth and theta_r.
+        auto plane = [&](auto packet) {
             using Packet = decltype(packet);
-            Packet low = dr::gather<Packet>(in_plane, row), high = dr::gather<Packet>(in_plane, row + 1u);
-            return dr::fmadd(Packet(r), high - low, low);
+            auto far = single(dr::gather<Packet>(in_plane, corners + azimuths * thetas));
+            auto near = single(dr::gather<Packet>(in_plane, corners));
+            return dr::fmadd(decltype(near)(s), far - near, near);
         };
-        UInt32 next = row + azimuths * (thetas + 1);
-        auto plane = [&](auto packet) { return across(along(packet, row), along(packet, next)); };
         auto between = [&](const Float &from, const Float &to) { return Float(dr::fmadd(t, to - from, from)); };
+        auto middle = [&](const auto &p, size_t n, const Float &r) {
+            return dr::lerp(between(p[n], p[n + 1]), between(p[n + 2], p[n + 3]), r);
+        };
         Float level, foam;
         if (whitecaps) {
-            TwoEnds ends = plane(TwoEnds());
-            level = between(ends[0], ends[1]);
-            foam = between(ends[2], ends[3]);
+            auto ends = plane(Eight());
+            level = middle(ends, 0, r);
+            foam = middle(ends, 4, r);
         } else {
-            Ends ends = plane(Ends());
-            level = between(ends[0], ends[1]);
+            level = middle(plane(Four()), 0, r);
         }
 
         Float f = 0.f;
@@ -106,14 +108,14 @@ template <typename Float_> struct Tabled {
                                                      lean * dr::fmsub(h.y(), cos_wind, h.x() * sin_wind))) *
                     visible(lobe, larger(i.z(), 0.f), lobe.sine(i.z()), o_z, lobe.sine(o.z()));
             } else {
-                TwoEnds w = across(dr::gather<TwoEnds>(widths, cell), dr::gather<TwoEnds>(widths, cell + azimuths));
+                auto w = single(dr::gather<Eight>(widths, cell));
                 // Eqs. 87-89 by half angles; both components that make phi are 1 + tan^2 times as long.
                 Float tan2 = tan_i * tan_i, one = 1.f + tan2, aside = dr::fmsub(o.y(), x, o.x() * y) * inv * one,
                       specular = dr::abs(dr::fmadd(2.f * tan_i, forward, (1.f - tan2) * o_z)), abs = dr::abs(aside),
                       most = larger(larger(abs, specular), Small),
                       phi = Lobe<Float>::template angle<Float>(aside, specular, abs, most, dr::rcp(most)),
-                      off = dr::select(sin < 0.f, -phi, phi) - between(w[2], w[3]), lower = smaller(tan_i, tan_r),
-                      narrow = between(w[0], w[1]) * dr::fnmadd(tan_i, lower, 1.f),
+                      off = dr::select(sin < 0.f, -phi, phi) - middle(w, 4, s), lower = smaller(tan_i, tan_r),
+                      narrow = middle(w, 0, s) * dr::fnmadd(tan_i, lower, 1.f),
                       x2 = off * off * one * dr::fmadd(lower, lower, 1.f) * dr::rcp(narrow * narrow);
                 // In the plane: the half vector leans by half the difference of theta_r and theta_i.
                 Float over_i = dr::rcp(one), over_r = dr::rcp(dr::fmadd(tan_r, tan_r, 1.f)),
@@ -132,16 +134,21 @@ private:
     /// The logarithm of the facets' density along a half vector of a slope upwind and crosswind.
     Float ln_density(const Float &slope_u, const Float &slope_c) const {
         namespace dr = drjit;
-        float middle = .5f * (rows - 1), end = rows - 1.f;
-        Float u = dr::fmadd(slope_u * Lobe<Float>::atan_over(slope_u * slope_u), inv_step_u, middle),
-              c = dr::fmadd(slope_c * Lobe<Float>::atan_over(slope_c * slope_c), inv_step_c, middle);
+        float middle = .5f * steps, end = (float) steps;
+        Float tilt_u = slope_u * Lobe<Float>::atan_over(slope_u * slope_u) * inv_sigma_u,
+              tilt_c = slope_c * Lobe<Float>::atan_over(slope_c * slope_c) * inv_sigma_c,
+              u = dr::fmadd(tilt_u, inv_step_u, middle), c = dr::fmadd(tilt_c, inv_step_c, middle);
         Mask inside = u > 0.f && c > 0.f && u < end && c < end;
-        auto [j, s] = split(dr::select(inside, u, 0.f), rows - 1);
-        auto [k, t] = split(dr::select(inside, c, 0.f), rows - 1);
-        UInt32 node = j * rows + k;
-        Ends near = dr::gather<Ends>(densities, node), far = dr::gather<Ends>(densities, node + rows);
-        Ends mixed = dr::fmadd(Ends(s), far - near, near);
-        return dr::select(inside, dr::fmadd(t, mixed[1] - mixed[0], mixed[0]), Nothing);
+        auto [j, s] = split(dr::select(inside, u, 0.f), steps);
+        auto [k, t] = split(dr::select(inside, c, 0.f), steps);
+        auto p = single(dr::gather<Four>(densities, j * steps + k));
+        Float ratio = dr::lerp(dr::lerp(p[0], p[1], t), dr::lerp(p[2], p[3], t), s),
+              gauss = .5f * dr::fmadd(tilt_u, tilt_u, tilt_c * tilt_c);
+        return dr::select(inside, ratio - gauss, Nothing);
+    }
+
+    template <typename Packet> static auto single(const Packet &packet) {
+        return drjit::Array<Float, Packet::Size>(packet);
     }
 
     /// G/(cos theta_i cos theta_r) on level water.

@@ -71,8 +71,9 @@ mod ffi {
         whitecaps: bool,
         /// `across = "slopes"`.
         slopes: bool,
-        density_rows: u32,
-        density_steps: [f64; 2],
+        density_steps: u32,
+        sigmas: [f64; 2],
+        density_step: [f64; 2],
         densities: Vec<f32>,
     }
 
@@ -303,8 +304,9 @@ impl Water {
                 widths: vec![],
                 whitecaps: false,
                 slopes: false,
-                density_rows: 0,
-                density_steps: [1.0; 2],
+                density_steps: 0,
+                sigmas: [1.0; 2],
+                density_step: [1.0; 2],
                 densities: vec![],
             };
         };
@@ -316,8 +318,9 @@ impl Water {
             widths: g.widths,
             whitecaps: g.whitecaps,
             slopes: g.slopes,
-            density_rows: g.density_rows,
             density_steps: g.density_steps,
+            sigmas: g.sigmas,
+            density_step: g.density_step,
             densities: g.densities,
         }
     }

@@ -12,7 +12,7 @@
 typedef enum ProbWaterStatus {
   // Done.
   PROB_WATER_STATUS_OK = 0,
-  // A parameter is unknown, of the wrong type, out of range, or excluded by another one.
+  // A parameter is unknown, of the wrong type, out of range, or excluded by another one; or a table is not to be used.
   PROB_WATER_STATUS_PARAMETER = 1,
   // A row's direction is not a finite unit vector, a normal does not point up, or a uniform number
   // is outside [0, 1).
@@ -56,7 +56,8 @@ const char *prob_water_last_error(void);
 // New options, all at their defaults. Free with `prob_water_options_free`.
 struct ProbWaterOptions *prob_water_options_new(void);
 
-// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact".
+// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact". Beside the vocabulary's there is
+// "table", the path of a table of the empirical model for surface "empirical", instead of the library's own.
 //
 // # Safety
 // `options` comes from `prob_water_options_new`; `name` and `value` are C strings.
@@ -98,7 +99,7 @@ void prob_water_free(struct ProbWater *sea);
 enum ProbWaterStatus prob_water_summary(const struct ProbWater *sea, struct ProbWaterSummary *summary);
 
 // The BRDF f, 1/sr, of every row in float64: unit vectors to the source and to the observer, and
-// wave normals, or null for a flat sea. A direction below the horizon gives 0.
+// wave normals, or null for a flat sea, as an empirical one always is. A direction below the horizon gives 0.
 //
 // # Safety
 // `sea` comes from `prob_water_configure`; the vectors hold `rows` triples, `f` `rows` numbers.
@@ -120,6 +121,19 @@ enum ProbWaterStatus prob_water_eval_f32(const struct ProbWater *sea,
                                          const float *to_observer,
                                          const float *normals,
                                          float *f);
+
+// The mean of f, 1/sr, of every row by the empirical model, its standard uncertainty, and whether the directions lie
+// outside of the table's grid (1), whose nearest values these are, or not (0).
+//
+// # Safety
+// As `prob_water_eval`; `outside` holds `rows` bytes. The sea's surface is "empirical".
+enum ProbWaterStatus prob_water_estimate(const struct ProbWater *sea,
+                                         size_t rows,
+                                         const double *to_source,
+                                         const double *to_observer,
+                                         double *mean,
+                                         double *std,
+                                         uint8_t *outside);
 
 // The density, 1/sr, with which `prob_water_sample` draws every row's observer for its source.
 //

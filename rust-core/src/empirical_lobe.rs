@@ -80,8 +80,7 @@ pub struct EmpiricalLobe {
     in_plane: Vec<[f32; 3]>,
     /// By theta_i and azimuth: sigma, u_sigma, delta, u_delta, radians.
     widths: Vec<[f32; 4]>,
-    /// The logarithm of the facets' density along a half vector, over its tilt angles upwind and crosswind, and the steps
-    /// between nodes, radians.
+    /// What [`ln_densities`] gives.
     densities: Vec<f32>,
     steps: [f64; 2],
 }
@@ -93,21 +92,23 @@ pub struct FineGrid {
     pub steps: [u32; 3],
     /// The largest tan(theta_i/2).
     pub incidence: f64,
-    /// By theta_i, by intervals of the azimuth and by theta_r, what the interval's two ends hold: logarithms of the ratio
-    /// to level water, and with `whitecaps` their shares.
+    /// By theta_i, by intervals of the azimuth and by those of theta_r, what the four corners hold, azimuths first:
+    /// logarithms of the ratio to level water, and with `whitecaps` their shares.
     pub in_plane: Vec<f32>,
-    /// By theta_i and intervals of the azimuth: sigma of the two ends, then delta.
+    /// By intervals of theta_i and of the azimuth, of the four corners, azimuths first: sigma, then delta.
     pub widths: Vec<f32>,
     /// There are whitecaps.
     pub whitecaps: bool,
     /// `across = "slopes"`.
     pub slopes: bool,
-    /// The logarithm of the facets' density along a half vector, over its tilt angles upwind and crosswind, 0 in the middle:
-    /// nodes on a side, the steps between them in radians, and row by row of those upwind.
-    pub density_rows: u32,
+    /// The density of facets along a half vector, over its tilt angles upwind and crosswind, 0 in the middle: steps on a
+    /// side, the standard deviations of both angles in radians, and the steps in those.
+    pub density_steps: u32,
     /// Radians.
-    pub density_steps: [f64; 2],
-    /// Natural logarithms.
+    pub sigmas: [f64; 2],
+    /// Standard deviations.
+    pub density_step: [f64; 2],
+    /// By cells, of the four corners, crosswind first, the logarithm of the ratio to Gauss's function of the angles.
     pub densities: Vec<f32>,
 }
 
@@ -135,15 +136,16 @@ impl EmpiricalLobe {
         let slice = table.slice(water)?;
         let spreads = Spreads::new(water);
         let (densities, steps) = ln_densities(&Exact::new(water)?, &spreads, DENSITIES);
+        let densities = densities.into_iter().map(half).collect();
         let [incidences, thetas] = slice.ends().map(|ends| ends.map(|angle| (0.5 * angle).tan()));
         // A table for the vertical alone has a grid all the same.
         let incidences = [incidences[0], incidences[1].max(1e-3)];
-        let half = |t: f64| 2.0 * t.atan();
-        let all: Vec<f64> = (0..=THETAS).map(|k| half(2.0 * k as f64 / THETAS as f64 - 1.0)).collect();
+        let twice = |t: f64| 2.0 * t.atan();
+        let all: Vec<f64> = (0..=THETAS).map(|k| twice(2.0 * k as f64 / THETAS as f64 - 1.0)).collect();
         let rows: Vec<_> = (0..(INCIDENCES + 1) * (AZIMUTHS + 1))
             .into_par_iter()
             .map(|row| {
-                let of_source = half(incidences[1] * (row / (AZIMUTHS + 1)) as f64 / INCIDENCES as f64);
+                let of_source = twice(incidences[1] * (row / (AZIMUTHS + 1)) as f64 / INCIDENCES as f64);
                 let azimuth = turn(2.0 * (row % (AZIMUTHS + 1)) as f64 / AZIMUTHS as f64);
                 let (in_plane, widths) = slice.row(of_source, azimuth, &all);
                 let spreads = spreads.turned(azimuth.to_degrees());
@@ -151,9 +153,9 @@ impl EmpiricalLobe {
                 let cells = in_plane.iter().zip(&all).map(|([ratio, whitecaps, square], theta)| {
                     // At the horizon all is hidden: a little above it stands for that.
                     let o = [theta.sin(), 0.0, theta.cos().max(LOWEST)];
-                    [(ratio * spreads.share(source, o)).ln(), *whitecaps, *square].map(|x| x as f32)
+                    [(ratio * spreads.share(source, o)).ln(), *whitecaps, *square].map(half)
                 });
-                (cells.collect::<Vec<_>>(), widths.map(|x| x as f32))
+                (cells.collect::<Vec<_>>(), widths.map(half))
             })
             .collect();
         let widths: Vec<[f32; 4]> = rows.iter().map(|(_, widths)| *widths).collect();
@@ -241,8 +243,9 @@ impl EmpiricalLobe {
     /// The logarithm of the facets' density along a half vector of a slope upwind and crosswind.
     fn ln_density<T: Real>(&self, slope: [T; 2]) -> T {
         let middle = 0.5 * (DENSITIES - 1) as f64;
-        let [u, c] =
-            [0, 1].map(|k| Real::atan2(slope[k], T::of(1.0)) * T::of(1.0 / self.steps[k]) + T::of(middle));
+        let sigmas = self.spreads.sigmas();
+        let tilt = [0, 1].map(|k| Real::atan2(slope[k], T::of(1.0)) * T::of(1.0 / sigmas[k]));
+        let [u, c] = [0, 1].map(|k| tilt[k] * T::of(1.0 / self.steps[k]) + T::of(middle));
         let end = T::of(2.0 * middle);
         let inside = T::of(0.0).below(u) && u.below(end) && T::of(0.0).below(c) && c.below(end);
         if !inside {
@@ -252,7 +255,8 @@ impl EmpiricalLobe {
         let node = |n: usize| T::of(f64::from(self.densities[n]));
         let at = |n: usize| node(n) + t * (node(n + 1) - node(n));
         let (near, far) = (at(j * DENSITIES + k), at((j + 1) * DENSITIES + k));
-        near + s * (far - near)
+        let gauss = T::of(0.5) * (tilt[0] * tilt[0] + tilt[1] * tilt[1]);
+        near + s * (far - near) - gauss
     }
 
     /// f with its standard uncertainty (Eqs. 90-91), for unit vectors to source and observer.
@@ -417,23 +421,36 @@ impl EmpiricalLobe {
             [row, row + 1]
         });
         let in_plane = ends.clone().flat_map(|rows| {
-            (0..=THETAS).flat_map(move |theta| {
-                let at = |n: usize| rows.map(|row| self.in_plane[row * (THETAS + 1) + theta][n]);
-                let shares = whitecaps.then(|| at(1));
-                at(0).into_iter().chain(shares.into_iter().flatten())
+            (0..THETAS).flat_map(move |theta| {
+                let at = |n: usize| {
+                    [theta, theta + 1]
+                        .map(|t| rows.map(|row| self.in_plane[row * (THETAS + 1) + t][n]))
+                        .concat()
+                };
+                let shares = if whitecaps { at(1) } else { vec![] };
+                at(0).into_iter().chain(shares)
             })
         });
-        let widths = ends.clone().flat_map(|rows| [0, 2].map(|n| rows.map(|row| self.widths[row][n])));
+        let ends = (0..INCIDENCES * AZIMUTHS).map(|k| {
+            let row = k / AZIMUTHS * (AZIMUTHS + 1) + k % AZIMUTHS;
+            [row, row + 1, row + AZIMUTHS + 1, row + AZIMUTHS + 2]
+        });
+        let widths = ends.flat_map(|rows| [0, 2].map(|n| rows.map(|row| self.widths[row][n])).concat());
+        let cells = (0..(DENSITIES - 1) * (DENSITIES - 1))
+            .map(|k| k / (DENSITIES - 1) * DENSITIES + k % (DENSITIES - 1));
+        let densities =
+            cells.flat_map(|n| [n, n + 1, n + DENSITIES, n + DENSITIES + 1].map(|n| self.densities[n]));
         FineGrid {
             steps: [INCIDENCES as u32, AZIMUTHS as u32, THETAS as u32],
             incidence: self.incidences[1],
             in_plane: in_plane.collect(),
-            widths: widths.flatten().collect(),
+            widths: widths.collect(),
             whitecaps,
             slopes: self.across == Across::Slopes,
-            density_rows: DENSITIES as u32,
-            density_steps: self.steps,
-            densities: self.densities.clone(),
+            density_steps: DENSITIES as u32 - 1,
+            sigmas: self.spreads.sigmas(),
+            density_step: self.steps,
+            densities: densities.collect(),
         }
     }
 }
@@ -443,6 +460,12 @@ fn normals(a: f64, b: f64) -> [f64; 2] {
     let (sin, cos) = (TAU * b).sin_cos();
     let radius = (-2.0 * (1.0 - a).ln()).sqrt();
     [radius * cos, radius * sin]
+}
+
+/// Rounded to half precision, in which traced code keeps its grid: 11 bits, or 2^-24 near 0.
+fn half(x: f64) -> f32 {
+    let unit = 2f64.powi((x.abs().log2().floor() as i32).max(-14) - 10);
+    ((x / unit).round_ties_even() * unit) as f32
 }
 
 /// A place on an axis of so many steps: the step and how far along it.

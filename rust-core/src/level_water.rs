@@ -47,6 +47,11 @@ impl Spreads {
         DVec2::new(v.dot(wind), v.dot(wind.perp()))
     }
 
+    /// Standard deviations of all slopes, upwind and crosswind.
+    pub fn sigmas(&self) -> [f64; 2] {
+        [self.all.sigma_u, self.all.sigma_c]
+    }
+
     fn to_world(self, v: DVec2) -> DVec2 {
         let wind = DVec2::new(self.all.cos_wind, self.all.sin_wind);
         v.x * wind + v.y * wind.perp()
@@ -93,20 +98,22 @@ impl Spreads {
     }
 }
 
-/// Logarithms of the density of facets along a half vector, with the 1/4 of Eq. 56, over its tilt angles upwind and
-/// crosswind, 0 in the middle: so many nodes on a side, row by row of those upwind; and the steps between them, radians.
-pub(crate) fn ln_densities(exact: &Exact, spreads: &Spreads, rows: usize) -> (Vec<f32>, [f64; 2]) {
+/// The density of facets along a half vector, with the 1/4 of Eq. 56, over its tilt angles upwind and crosswind, 0 in the
+/// middle: so many nodes on a side, row by row of those upwind, the logarithm of its ratio to Gauss's function of the two
+/// angles, of all slopes' variances; and the steps between nodes in standard deviations.
+pub(crate) fn ln_densities(exact: &Exact, spreads: &Spreads, rows: usize) -> (Vec<f64>, [f64; 2]) {
     let table = exact.facet_density();
     let middle = 0.5 * (rows - 1) as f64;
-    let steps = [spreads.all.sigma_u, spreads.all.sigma_c].map(|sigma| facet_density::end(sigma) / middle);
+    let sigmas = DVec2::from(spreads.sigmas());
+    let steps = sigmas.map(|sigma| facet_density::end(sigma) / sigma) / middle;
     let at = |n: usize| {
-        let [u, c] = [(n / rows) as f64, (n % rows) as f64].map(|k| k - middle);
-        let slope = DVec2::new((u * steps[0]).tan(), (c * steps[1]).tan());
+        let place = (DVec2::new((n / rows) as f64, (n % rows) as f64) - middle) * steps;
+        let slope = (place * sigmas).map(f64::tan);
         let density = match &table {
             Some(table) => table.at(slope).density,
             None => spreads.all.density_along(normal(spreads.to_world(slope).into()), up()),
         };
-        density.ln().max(NOTHING) as f32
+        density.ln().max(NOTHING) + 0.5 * place.length_squared()
     };
-    ((0..rows * rows).map(at).collect(), steps)
+    ((0..rows * rows).map(at).collect(), steps.into())
 }
