@@ -153,7 +153,7 @@ impl EmpiricalLobe {
                 let cells = in_plane.iter().zip(&all).map(|([ratio, whitecaps, square], theta)| {
                     // At the horizon all is hidden: a little above it stands for that.
                     let o = [theta.sin(), 0.0, theta.cos().max(LOWEST)];
-                    [(ratio * spreads.share(source, o)).ln(), *whitecaps, *square].map(half)
+                    [half((ratio * spreads.share(source, o)).ln()), *whitecaps as f32, *square as f32]
                 });
                 (cells.collect::<Vec<_>>(), widths.map(half))
             })

@@ -207,6 +207,7 @@ impl Plan {
         }
         let thetas = self.grid.theta_r.len();
         let mut table = Table {
+            version: env!("CARGO_PKG_VERSION").into(),
             parameters: self.parameters,
             grid: self.grid.clone(),
             in_plane: std::array::from_fn(|_| vec![]),
@@ -240,6 +241,8 @@ fn rounded(x: f64) -> f32 {
 /// A table of the empirical model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
+    /// Version of this crate that made it.
+    pub version: String,
     /// What it was made with; the wind, the footprint and the angles are the grid's.
     pub parameters: Parameters,
     /// Where its nodes are.

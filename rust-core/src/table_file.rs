@@ -95,7 +95,7 @@ impl Table {
         let metadata = json!({
             "format": FORMAT,
             "format_version": FORMAT_VERSION,
-            "prob_water": env!("CARGO_PKG_VERSION"),
+            "prob_water": self.version,
             "parameters": parameters,
             "shape": ["friction_velocity", "footprint", "incidence", "wind_azimuth", "theta_r"],
             "units": {
@@ -187,6 +187,7 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
     let [mean, std, whitecaps, approximate] = IN_PLANE.each_ref().map(|name| all(name, &shape));
     let [sigma, u_sigma, delta, u_delta, fitted] = WIDTHS.each_ref().map(|name| all(name, &shape[..4]));
     Ok(Table {
+        version: told("prob_water").as_str().ok_or("its metadata do not tell what made it")?.into(),
         parameters: parameters.and_then(|p| p.configure().map(|_| p)).map_err(|e| e.to_string())?,
         in_plane: [mean?, std?, whitecaps?, approximate?],
         widths: [sigma?, u_sigma?, delta?, u_delta?, fitted?],

@@ -194,7 +194,8 @@ fn refusal(matches: &ArgMatches, error: Error) -> String {
 /// Two tables with the same description have the same rows.
 fn description(parameters: Parameters, grid: Grid) -> String {
     let axes = format!("{grid:?}");
-    let empty = Table { parameters, grid, in_plane: Default::default(), widths: Default::default() };
+    let version = env!("CARGO_PKG_VERSION").into();
+    let empty = Table { version, parameters, grid, in_plane: Default::default(), widths: Default::default() };
     format!("rows of a prob-water table in the making\n{}\n{axes}\n", empty.metadata())
 }
 

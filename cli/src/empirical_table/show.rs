@@ -202,7 +202,12 @@ fn describe(matches: &ArgMatches, table: &Table) -> Outcome {
 fn readable(metadata: &Value, nodes: usize) -> String {
     let word = |value: &Value| value.as_str().map_or(value.to_string(), str::to_owned);
     let entries = |name: &str| metadata[name].as_object().expect("is an object").iter();
-    let mut text = format!("{}, format version {}\n", word(&metadata["format"]), metadata["format_version"]);
+    let mut text = format!(
+        "{}, format version {}, made by prob-water {}\n",
+        word(&metadata["format"]),
+        metadata["format_version"],
+        word(&metadata["prob_water"])
+    );
     let mut line = |line: String| writeln!(text, "{line}").expect("a string takes all");
     line(format!("\ngrid, {nodes} nodes:"));
     for (name, axis) in entries("grid") {
