@@ -95,7 +95,7 @@ def in_plane_errors(tables: Tables) -> Verdict:
         rows = select(tables["curves"], friction_velocity=w, plane="in")
         exact, report = (select(rows, model=model) for model in ("full", "report"))
         seen = (exact["mean"] > 0.01 * exact["mean"].max()) & (abs(exact["angle"]) <= 70)
-        worst.append(abs(report["mean"] / exact["mean"] - 1)[seen].max())
+        worst.append(abs(report["mean"][seen] / exact["mean"][seen] - 1).max())
     return Verdict(max(worst) < 0.05, f"largest for w* = {listed(WINDS)}: {listed([100 * x for x in worst], 2)} %")
 
 
@@ -167,10 +167,10 @@ def near_errors(tables: Tables, form: str) -> np.ndarray:
 
 
 def holds_near(form: str):
-    """Whether a form is within 10 % there."""
+    """Whether a form is within 10 % at 99 of 100 points there."""
     def check(tables: Tables) -> Verdict:
         errors = near_errors(tables, form)
-        return Verdict(bool(errors.max() < 10), f"{(errors < 10).mean():.0%} of {len(errors)} points within 10 %; "
+        return Verdict(bool((errors < 10).mean() >= 0.99), f"{(errors < 10).mean():.1%} of {len(errors)} points within 10 %; "
                                                 f"median {np.median(errors):.1f} %, largest {errors.max():.0f} %")
     return check
 
@@ -199,9 +199,10 @@ FIGURES = [
         collect=collect_map,
         draw=draw_map,
         claims=[
-            Claim("To 1.5 widths across and 15° off the specular direction Eq. 90 is within 10 % of the full mean.",
+            Claim("To 1.5 widths across and 15° off the specular direction Eq. 90 is within 10 % of the full mean at 99 of 100 points.",
                   holds_near("report"), expected=False, own=True),
-            Claim("There the slopes' density is within 10 % of the full mean.", holds_near("slopes"), own=True),
+            Claim("There across = slopes is within 10 % of the full mean at 99 of 100 points.", holds_near("slopes"),
+                  own=True),
         ],
     ),
 ]
