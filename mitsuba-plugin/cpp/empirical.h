@@ -27,8 +27,8 @@ template <typename Float_> struct Tabled {
     bool whitecaps = false, slopes = false;
     /// Steps on a side of the density of facets.
     uint32_t steps = 0;
-    /// The largest tan(theta_i/2), and steps over it; standard deviations of tilt angles, and steps over those.
-    Float cos_wind, sin_wind, last, inv_step, inv_sigma_u, inv_sigma_c, inv_step_u, inv_step_c;
+    /// The largest tan(theta_i/2), and steps over it; shares of waves in slopes; standard deviations of tilt angles, and steps over those.
+    Float cos_wind, sin_wind, last, inv_step, carried_u, carried_c, inv_sigma_u, inv_sigma_c, inv_step_u, inv_step_c;
     Buffer in_plane, widths, densities;
 
     Tabled(const FineGrid &g, const Coefficients &c)
@@ -41,6 +41,8 @@ template <typename Float_> struct Tabled {
         sin_wind = data(c.sin_wind);
         last = data(g.incidence);
         inv_step = data(incidences / g.incidence);
+        carried_u = data(g.carried[0]);
+        carried_c = data(g.carried[1]);
         inv_sigma_u = data(1. / g.sigmas[0]);
         inv_sigma_c = data(1. / g.sigmas[1]);
         inv_step_u = data(1. / g.density_step[0]);
@@ -54,8 +56,8 @@ template <typename Float_> struct Tabled {
         densities = halves(g.densities);
     }
 
-    DRJIT_STRUCT(Tabled, cos_wind, sin_wind, last, inv_step, inv_sigma_u, inv_sigma_c, inv_step_u, inv_step_c, in_plane,
-                 widths, densities)
+    DRJIT_STRUCT(Tabled, cos_wind, sin_wind, last, inv_step, carried_u, carried_c, inv_sigma_u, inv_sigma_c, inv_step_u,
+                 inv_step_c, in_plane, widths, densities)
 
     /// f cos(theta_o) of some of its parts.
     Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, Parts parts) const {
@@ -103,10 +105,14 @@ template <typename Float_> struct Tabled {
             Float rho = lobe.template reflectance<Float>(smaller(.5f * dr::norm(i + o), 1.f));
             if (slopes) {
                 Vector3f h = i + o;
-                Float lean = -dr::rcp(larger(h.z(), 1e-12f));
-                f = rho * dr::exp(level + ln_density(lean * dr::fmadd(h.x(), cos_wind, h.y() * sin_wind),
-                                                     lean * dr::fmsub(h.y(), cos_wind, h.x() * sin_wind))) *
-                    visible(lobe, larger(i.z(), 0.f), lobe.sine(i.z()), o_z, lobe.sine(o.z()));
+                Float lean = -dr::rcp(larger(h.z(), 1e-12f)), u = lean * dr::fmadd(h.x(), cos_wind, h.y() * sin_wind),
+                      v = lean * dr::fmsub(h.y(), cos_wind, h.x() * sin_wind), m_u = u * carried_u, m_v = v * carried_c,
+                      // The waves that carry these facets lean with them.
+                      up = dr::fnmadd(m_u, dr::fmadd(o.x(), cos_wind, o.y() * sin_wind),
+                                      dr::fnmadd(m_v, dr::fmsub(o.y(), cos_wind, o.x() * sin_wind), o_z)),
+                      cos_n = larger(up * dr::rsqrt(dr::fmadd(m_u, m_u, dr::fmadd(m_v, m_v, 1.f))), Leaning),
+                      cos_i = larger(i.z(), 0.f);
+                f = rho * dr::exp(level + ln_density(u, v)) * visible(lobe, cos_i, lobe.sine(cos_i), cos_n, lobe.sine(cos_n));
             } else {
                 auto w = single(dr::gather<Eight>(widths, cell));
                 // Eqs. 87-89 by half angles; both components that make phi are 1 + tan^2 times as long.
@@ -126,7 +132,7 @@ template <typename Float_> struct Tabled {
             }
         }
         if (parts.whitecaps && whitecaps)
-            f = dr::fmadd(lobe.whitecap_brdf, foam, f);
+            f = dr::fmadd(lobe.whitecap_brdf * (1.f / Shares), foam, f);
         return dr::select(lit, f * o_z, 0.f);
     }
 
@@ -165,7 +171,7 @@ private:
     }
 
     /// As in the core's empirical_lobe.rs and level_water.rs.
-    static constexpr float Nothing = -87.f, Grazing = 1e-6f;
+    static constexpr float Nothing = -87.f, Grazing = 1e-6f, Leaning = 1e-3f, Shares = 1024.f;
 
     /// A place on an axis of so many steps: the step and how far along it.
     static std::pair<UInt32, Float> split(const Float &x, uint32_t steps) {

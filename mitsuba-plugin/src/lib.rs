@@ -71,6 +71,7 @@ mod ffi {
         whitecaps: bool,
         /// `across = "slopes"`.
         slopes: bool,
+        carried: [f64; 2],
         density_steps: u32,
         sigmas: [f64; 2],
         density_step: [f64; 2],
@@ -304,6 +305,7 @@ impl Water {
                 widths: vec![],
                 whitecaps: false,
                 slopes: false,
+                carried: [0.0; 2],
                 density_steps: 0,
                 sigmas: [1.0; 2],
                 density_step: [1.0; 2],
@@ -318,6 +320,7 @@ impl Water {
             widths: g.widths,
             whitecaps: g.whitecaps,
             slopes: g.slopes,
+            carried: g.carried,
             density_steps: g.density_steps,
             sigmas: g.sigmas,
             density_step: g.density_step,

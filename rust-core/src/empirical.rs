@@ -35,8 +35,11 @@ const REACH: f64 = 3.0;
 const HIDDEN: [f64; 2] = [1e-4, 1e-3];
 /// So many instances are enough for the spreads of width and offset.
 const FITS: u64 = 2048;
-/// Points drawn for one that the source reaches.
-const MOST: f64 = 8.0;
+/// Smith's term of a low view, and how many times as many points are drawn for it at most.
+const LOW: f64 = 0.2;
+const MORE: f64 = 8.0;
+/// Points drawn for an instance at most.
+const MOST: f64 = 12.0;
 /// Instances a thread takes at a time: sums are taken in this order, whatever the number of threads.
 const CHUNK: u64 = 256;
 
@@ -188,27 +191,36 @@ impl Full {
             t * t * (3.0 - 2.0 * t)
         };
         let weights: Vec<f64> = seen.iter().map(|o| weight(*o)).collect();
-        let hidden: Vec<usize> = (0..seen.len()).filter(|k| weights[*k] > 0.0).collect();
-        let ways: Vec<[f64; 3]> = hidden.iter().map(|k| seen[*k]).collect();
-        let instances = if hidden.is_empty() { 0 } else { self.instances(source) };
-        let sums = self.drawn(source, &ways, instances);
-        // The area that level water shows the source.
-        let level = instances as f64 * source[2];
-        for (k, sums) in hidden.iter().zip(sums) {
-            let at = &mut moments[above[*k]];
-            *at = at.times(sums.visible(level), weights[*k]);
+        // Of narrow facets few draws count, and of low views few are seen: both together take more of them.
+        let [high, low]: [Vec<usize>; 2] = [false, true].map(|low| {
+            let matters = |k: &usize| weights[*k] > 0.0 && (self.spreads.hidden(seen[*k]) > LOW) == low;
+            (0..seen.len()).filter(matters).collect()
+        });
+        for (group, more) in [(high, 1.0), (low, self.spreads.narrowness().clamp(1.0, MORE))] {
+            if group.is_empty() {
+                continue;
+            }
+            let instances = self.instances(source, more);
+            let ways: Vec<[f64; 3]> = group.iter().map(|k| seen[*k]).collect();
+            // The area that level water shows the source.
+            let level = instances as f64 * source[2];
+            for (k, sums) in group.iter().zip(self.drawn(source, &ways, instances)) {
+                let at = &mut moments[above[*k]];
+                *at = at.times(sums.visible(level), weights[*k]);
+            }
         }
         Ok(moments)
     }
 
-    /// How many points are drawn, so that the source reaches as many as there are instances; at most [`MOST`] times more.
-    fn instances(&self, source: [f64; 3]) -> u64 {
+    /// How many points are drawn, so that the source reaches so many times as many as there are instances; at most
+    /// [`MOST`] times more.
+    fn instances(&self, source: [f64; 3], more: f64) -> u64 {
         let some = self.water.parameters.instances.min(CHUNK);
         let mut lit = 0;
         for instance in 0..some {
             self.point(instance, source, |point, _, _| lit += u64::from(point.lit));
         }
-        let times = some as f64 / lit.max(1) as f64;
+        let times = more * some as f64 / lit.max(1) as f64;
         (self.water.parameters.instances as f64 * times.min(MOST)).ceil() as u64
     }
 

@@ -32,7 +32,7 @@
 
 use crate::brdf::Parts;
 use crate::empirical::Moments;
-use crate::level_water::{NOTHING, Spreads, ln_densities};
+use crate::level_water::{LEANING, NOTHING, Spreads, ln_densities};
 use crate::real::Vec3;
 use crate::shadowing::hidden;
 use crate::table::Table;
@@ -46,6 +46,8 @@ use std::num::NonZeroU32;
 const INCIDENCES: usize = 32;
 const AZIMUTHS: usize = 16;
 const THETAS: usize = 80;
+/// Shares of whitecaps come to half precision in this part of 1, so that rare ones keep their digits.
+const SHARES: f64 = 1024.0;
 /// Nodes on a side of the density of facets.
 const DENSITIES: usize = 257;
 /// The area shown to both directions is at least this; and the cosine that stands for the horizon.
@@ -93,7 +95,7 @@ pub struct FineGrid {
     /// The largest tan(theta_i/2).
     pub incidence: f64,
     /// By theta_i, by intervals of the azimuth and by those of theta_r, what the four corners hold, azimuths first:
-    /// logarithms of the ratio to level water, and with `whitecaps` their shares.
+    /// logarithms of the ratio to level water, and with `whitecaps` 1024 times their shares.
     pub in_plane: Vec<f32>,
     /// By intervals of theta_i and of the azimuth, of the four corners, azimuths first: sigma, then delta.
     pub widths: Vec<f32>,
@@ -101,6 +103,8 @@ pub struct FineGrid {
     pub whitecaps: bool,
     /// `across = "slopes"`.
     pub slopes: bool,
+    /// Of a half vector's slope, upwind and crosswind, the share of the waves that carry its facets.
+    pub carried: [f64; 2],
     /// The density of facets along a half vector, over its tilt angles upwind and crosswind, 0 in the middle: steps on a
     /// side, the standard deviations of both angles in radians, and the steps in those.
     pub density_steps: u32,
@@ -153,7 +157,12 @@ impl EmpiricalLobe {
                 let cells = in_plane.iter().zip(&all).map(|([ratio, whitecaps, square], theta)| {
                     // At the horizon all is hidden: a little above it stands for that.
                     let o = [theta.sin(), 0.0, theta.cos().max(LOWEST)];
-                    [half((ratio * spreads.share(source, o)).ln()), *whitecaps as f32, *square as f32]
+                    let leaning = match water.parameters.across {
+                        Across::Slopes => spreads.shadowing(source, o) / spreads.leaning(source, o),
+                        Across::Report => 1.0,
+                    };
+                    let ratio = ratio * spreads.share(source, o) * leaning;
+                    [half(ratio.ln()), half(SHARES * whitecaps) / SHARES as f32, *square as f32]
                 });
                 (cells.collect::<Vec<_>>(), widths.map(half))
             })
@@ -218,8 +227,13 @@ impl EmpiricalLobe {
                 let [c, s] = [facets.cos_wind, facets.sin_wind].map(T::of);
                 let lean = -one / T::max(z, T::of(1e-12));
                 let slope = [lean * (x * c + y * s), lean * (y * c - x * s)];
+                // The waves that carry these facets lean with them, and show the observer more than level water does.
+                let carried = self.spreads.carried();
+                let [u, v] = [0, 1].map(|k| slope[k] * T::of(carried[k]));
+                let across = u * (o[0] * c + o[1] * s) + v * (o[1] * c - o[0] * s);
+                let cos = T::max((o[2] - across) / (one + u * u + v * v).sqrt(), T::of(LEANING));
                 let sine = |z: T| T::max(one - z * z, T::of(0.0)).sqrt();
-                (slope, [i[2], o[2]], [sine(i[2]), sine(o[2])])
+                (slope, [i[2], cos], [sine(i[2]), sine(cos)])
             }
             Across::Report => {
                 // By half angles: the half vector leans by half the difference of theta_r and theta_i.
@@ -422,13 +436,12 @@ impl EmpiricalLobe {
         });
         let in_plane = ends.clone().flat_map(|rows| {
             (0..THETAS).flat_map(move |theta| {
-                let at = |n: usize| {
-                    [theta, theta + 1]
-                        .map(|t| rows.map(|row| self.in_plane[row * (THETAS + 1) + t][n]))
-                        .concat()
+                let at = |n: usize, unit: f32| {
+                    let cell = |row: usize, t: usize| unit * self.in_plane[row * (THETAS + 1) + t][n];
+                    [theta, theta + 1].map(|t| rows.map(|row| cell(row, t))).concat()
                 };
-                let shares = if whitecaps { at(1) } else { vec![] };
-                at(0).into_iter().chain(shares)
+                let shares = if whitecaps { at(1, SHARES as f32) } else { vec![] };
+                at(0, 1.0).into_iter().chain(shares)
             })
         });
         let ends = (0..INCIDENCES * AZIMUTHS).map(|k| {
@@ -447,6 +460,7 @@ impl EmpiricalLobe {
             widths: widths.collect(),
             whitecaps,
             slopes: self.across == Across::Slopes,
+            carried: self.spreads.carried(),
             density_steps: DENSITIES as u32 - 1,
             sigmas: self.spreads.sigmas(),
             density_step: self.steps,

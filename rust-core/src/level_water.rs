@@ -10,11 +10,14 @@ use crate::optics::Reflectance;
 use crate::shadowing::hidden;
 use crate::surface::normal;
 use crate::{Lobe, Water};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
 
 /// The logarithm of next to nothing, in float32.
 pub(crate) const NOTHING: f64 = -87.0;
+
+/// Cosines to the normals of waves are at least this.
+pub(crate) const LEANING: f64 = 1e-3;
 
 /// What depends on the variances of the slopes alone.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +55,13 @@ impl Spreads {
         [self.all.sigma_u, self.all.sigma_c]
     }
 
+    /// How much wider all slopes are than the facets', in both directions together.
+    pub fn narrowness(&self) -> f64 {
+        let all = DVec2::from(self.sigmas());
+        let facets = (all * all - self.drawn * self.drawn).max(DVec2::splat(1e-9)).powf(0.5);
+        (all / facets).element_product()
+    }
+
     fn to_world(self, v: DVec2) -> DVec2 {
         let wind = DVec2::new(self.all.cos_wind, self.all.sin_wind);
         v.x * wind + v.y * wind.perp()
@@ -81,6 +91,26 @@ impl Spreads {
             return 0.0;
         }
         self.all.shadowed_reflectance(i, o, up()) / (i[2] * o[2])
+    }
+
+    /// Of a half vector's slope, upwind and crosswind, the share that the waves which carry its facets have, on average.
+    pub fn carried(&self) -> [f64; 2] {
+        (self.drawn * self.drawn / DVec2::from(self.sigmas()).powf(2.0)).into()
+    }
+
+    /// The same as [`Spreads::shadowing`], towards the observer about the normal of those waves.
+    pub fn leaning(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        let [i, o] = [i, o].map(DVec3::from);
+        let half = i + o;
+        let slope = self.to_wind(-half.truncate() / half.z) * DVec2::from(self.carried());
+        let lean = slope.length_squared();
+        let cos = ((o.z - slope.dot(self.to_wind(o.truncate()))) / (1.0 + lean).sqrt()).max(LEANING);
+        let mut area = i.z * cos;
+        if self.all.shadowing {
+            let part = |cos: f64| hidden(cos, self.all.sigma_shadow * (1.0 - cos * cos).max(0.0).sqrt());
+            area += cos * part(i.z) + i.z * part(cos);
+        }
+        1.0 / area
     }
 
     /// Logarithm of the mean square of f over its squared mean, if facets' and drawn waves' slopes are Gaussian.
