@@ -16,6 +16,9 @@ const QUERIES: usize = 200;
 /// The report's N.
 const INSTANCES: u64 = 50;
 
+/// What is timed: its name, how many values a run gives, and the run.
+type Candidate = (&'static str, usize, Box<dyn FnMut()>);
+
 fn main() {
     let repeats: usize = std::env::args().nth(1).map_or(5, |n| n.parse().expect("REPEATS is a number"));
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("nothing has run in parallel yet");
@@ -54,7 +57,7 @@ fn main() {
         let ensemble = Ensemble::new(&water);
         let draws = NonZeroU32::new(INSTANCES as u32).expect("is not 0");
 
-        let mut candidates: Vec<(&str, usize, Box<dyn FnMut()>)> = vec![
+        let mut candidates: Vec<Candidate> = vec![
             ("full, 50 instances", QUERIES, {
                 let views = views.clone();
                 Box::new(move || {

@@ -153,7 +153,7 @@ fn held_out(points: usize, seed: u64) -> HeldOut {
     let table = Table::standard();
     let mut rng = StdRng::seed_from_u64(seed);
     let mut found = HeldOut::default();
-    let geometric = |t: f64, [low, high]: [f64; 2]| low * (high / low as f64).powf(t);
+    let geometric = |t: f64, [low, high]: [f64; 2]| low * f64::powf(high / low, t);
     for _ in 0..points {
         let w = geometric(rng.random(), [2.0, 62.9]);
         let footprint = geometric(rng.random(), [0.02, 1.0]);
