@@ -211,6 +211,18 @@ def test_documented_snippets(use):
         assert re.search(rf"\* - .*\b{name}\b", text), name
 
 
+def by_angle(mi, bsdf):
+    """The value for a direction to the observer that an angle turns, as a function of it."""
+    import drjit as dr
+
+    def f(angle):
+        si = dr.zeros(mi.SurfaceInteraction3f)
+        si.wi = mi.Vector3f(I.tolist())
+        return bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(dr.sin(angle), 0.1, dr.sqrt(0.99 - dr.sin(angle) ** 2)))[0]
+
+    return f
+
+
 def test_gradients_flow_through_directions(use):
     """The traced BSDF is differentiable in its directions, against finite differences."""
     mi = use("llvm_ad_rgb")
@@ -218,11 +230,7 @@ def test_gradients_flow_through_directions(use):
 
     bsdf = mi.load_dict({"type": "prob_water", "friction_velocity": 24.0})
 
-    def f(angle):
-        si = dr.zeros(mi.SurfaceInteraction3f)
-        si.wi = mi.Vector3f(I.tolist())
-        return bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(dr.sin(angle), 0.1, dr.sqrt(0.99 - dr.sin(angle) ** 2)))[0]
-
+    f = by_angle(mi, bsdf)
     angle = mi.Float(0.5)
     dr.enable_grad(angle)
     dr.backward(f(angle))

@@ -7,7 +7,7 @@ import pytest
 from bench_off import operations
 from core import ROOT, Core, direction
 from float32_errors import evaluate
-from test_behaviour import BOTH, CPU_VARIANTS, I, O, interaction, number, value
+from test_behaviour import BOTH, CPU_VARIANTS, I, O, by_angle, interaction, number, value
 from test_lanes import draw
 from test_sampling import adapter
 
@@ -241,11 +241,7 @@ def test_gradients_flow_through_directions(use, across):
     mi = use("llvm_ad_rgb")
     bsdf = mi.load_dict({**EMPIRICAL, "friction_velocity": 24.0, "across": across})
 
-    def f(angle):
-        si = dr.zeros(mi.SurfaceInteraction3f)
-        si.wi = mi.Vector3f(I.tolist())
-        return bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(dr.sin(angle), 0.1, dr.sqrt(0.99 - dr.sin(angle) ** 2)))[0]
-
+    f = by_angle(mi, bsdf)
     angle = mi.Float(0.5)
     dr.enable_grad(angle)
     dr.backward(f(angle))

@@ -61,9 +61,7 @@ impl Moments {
         let square = rho * rho * self.facets2 + whitecap * whitecap * self.whitecaps;
         [mean, (square - mean * mean).max(0.0).sqrt()]
     }
-}
 
-impl Moments {
     /// Each times a factor, which counts as much as `weight`, from 0 to 1.
     fn times(&self, factors: [f64; 3], weight: f64) -> Self {
         let [a, b, c] = factors.map(|factor| 1.0 + weight * (factor - 1.0));
