@@ -52,13 +52,14 @@ template <typename Float_> struct Lobe {
         whitecap_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
-    float ierfc[7] = {};
+    float ierfc[10] = {}, ierfc_end = 0;
 
     explicit Lobe(const Coefficients &c)
         : exact(c.exact), slope_measure(c.slope_measure), gram_charlier(c.gram_charlier), shadowing(c.shadowing),
           bounded(c.bounded), as_printed(c.as_printed) {
-        for (int k = 0; k < 7; ++k)
+        for (int k = 0; k < 10; ++k)
             ierfc[k] = c.ierfc[k];
+        ierfc_end = c.ierfc_end;
         auto data = [](float x) { return drjit::opaque<Float>(x); };
         auto wide = [](double x) { return drjit::opaque<Wide>((WideScalar) x); };
         cos_wind = wide(c.cos_wind);

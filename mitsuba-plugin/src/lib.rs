@@ -3,7 +3,7 @@
 mod evaluate;
 mod surface;
 
-use prob_water::real::IERFC;
+use prob_water::real::{IERFC, IERFC_END};
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
 use prob_water::{
     Average, EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Surface, Table, whitecap,
@@ -40,7 +40,8 @@ mod ffi {
         as_printed: bool,
         /// Whether whitecaps take part, wherever they are.
         whitecaps: bool,
-        ierfc: [f32; 7],
+        ierfc: [f32; 10],
+        ierfc_end: f32,
     }
 
     /// Which surface the facets lie on.
@@ -270,6 +271,7 @@ impl Water {
                 _ => lobe.whitecap_fraction > 0.0,
             },
             ierfc: IERFC,
+            ierfc_end: IERFC_END,
         }
     }
 
