@@ -1,7 +1,7 @@
 //! The hot path of the scalar variants, as plain C functions.
 
 use crate::{Water, Waves};
-use prob_water::brdf::{Parts, up};
+use prob_water::brdf::Parts;
 use prob_water::{Lobe, Sample};
 
 /// What a place has of its own.
@@ -19,7 +19,7 @@ pub struct Place {
 #[repr(C)]
 pub struct Spot {
     lobe: Lobe<f32>,
-    n: [f32; 3],
+    n: Option<[f32; 3]>,
 }
 
 // The shim keeps a Spot in as many bytes.
@@ -31,7 +31,7 @@ impl Water {
         let f = match &self.waves {
             Waves::Afar(afar) => afar.eval_parts(i.map(f64::from), o.map(f64::from), parts) as f32,
             Waves::Tabled(tabled) => tabled.eval_parts(i, o, parts),
-            _ => self.lobe.eval_parts(i, o, up(), parts),
+            _ => self.lobe.eval_parts(i, o, None, parts),
         };
         f * o[2].max(0.0)
     }
@@ -42,10 +42,10 @@ impl Water {
         if let (Some(table), Some(footprint)) = (&self.facets, footprint) {
             table.set(&mut lobe.facets, footprint);
         }
-        let mut n = up();
+        let mut n = None;
         if let Waves::Drawn(sea) = &self.waves {
             let spot = sea.spot(place.place, footprint);
-            n = spot.normal.map(|x| x as f32);
+            n = Some(spot.normal.map(|x| x as f32));
             lobe.whitecap_fraction = spot.whitecap as f32;
         }
         if !place.whitecaps.is_nan() {
@@ -68,7 +68,7 @@ pub extern "C" fn prob_water_bsdf_eval(water: &Water, bits: u32, i: &[f32; 3], o
 /// Density, 1/sr, with which [`prob_water_bsdf_sample`] draws `o`.
 #[unsafe(no_mangle)]
 pub extern "C" fn prob_water_bsdf_pdf(water: &Water, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
-    water.lobe.pdf_parts(*i, *o, up(), parts(bits))
+    water.lobe.pdf_parts(*i, *o, None, parts(bits))
 }
 
 /// Draws a direction from three uniform numbers; the sample's `f` is f cos(theta_o).
@@ -80,7 +80,7 @@ pub extern "C" fn prob_water_bsdf_sample(
     u: &[f32; 3],
     sample: &mut Sample<f32>,
 ) {
-    *sample = water.lobe.sample_parts(*i, up(), *u, parts(bits));
+    *sample = water.lobe.sample_parts(*i, None, *u, parts(bits));
     sample.f = match water.waves {
         Waves::Afar(_) | Waves::Tabled(_) => water.eval(*i, sample.direction, parts(bits)),
         _ => sample.f * sample.direction[2].max(0.0),

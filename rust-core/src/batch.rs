@@ -1,8 +1,8 @@
 //! Checked evaluation of many rows: every direction is looked at before the first is evaluated.
 
-use crate::brdf::up;
-use crate::real::{Vec3, dot};
-use crate::{Error, Lobe, Real};
+use crate::real::Vec3;
+pub use crate::columns::{Columns, Coordinates};
+use crate::{Error, Lobe, Scalar};
 
 /// How far a unit vector's length may be from 1.
 pub const UNIT_TOLERANCE: f64 = 1e-4;
@@ -15,7 +15,7 @@ pub struct Rows<'a, T> {
     normals: Option<&'a [Vec3<T>]>,
 }
 
-impl<'a, T: Real> Rows<'a, T> {
+impl<'a, T: Scalar> Rows<'a, T> {
     /// Checks lengths of the arrays and of every vector; a normal must point up.
     pub fn new(
         to_source: &'a [Vec3<T>],
@@ -27,8 +27,7 @@ impl<'a, T: Real> Rows<'a, T> {
         check_units("to_observer", to_observer)?;
         if let Some(normals) = normals {
             same_length("normals", normals.len(), to_source.len())?;
-            check_units("normals", normals)?;
-            check_all("normals", normals, "a normal that points up", |v| v[2] > 0.0)?;
+            check_rows("normals", normals.iter().copied(), true)?;
         }
         Ok(Self { to_source, to_observer, normals })
     }
@@ -38,15 +37,16 @@ impl<'a, T: Real> Rows<'a, T> {
         self.each(f, |_, i, o, n| lobe.eval(i, o, n))
     }
 
-    /// Writes a value of every row: of its number from 0, its directions to source and observer and its normal.
+    /// Writes a value of every row: of its number from 0, its directions to source and observer and its normal, if
+    /// it has one.
     pub fn each(
         &self,
         out: &mut [T],
-        value: impl Fn(usize, Vec3<T>, Vec3<T>, Vec3<T>) -> T,
+        value: impl Fn(usize, Vec3<T>, Vec3<T>, Option<Vec3<T>>) -> T,
     ) -> Result<(), Error> {
         same_length("the output", out.len(), self.to_source.len())?;
         for (row, out) in out.iter_mut().enumerate() {
-            let n = self.normals.map_or_else(up, |n| n[row]);
+            let n = self.normals.map(|n| n[row]);
             *out = value(row, self.to_source[row], self.to_observer[row], n);
         }
         Ok(())
@@ -58,27 +58,31 @@ impl<'a, T: Real> Rows<'a, T> {
     }
 }
 
-fn same_length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {
+pub(crate) fn same_length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {
     if found == expected { Ok(()) } else { Err(Error::Length { what, found, expected }) }
 }
 
 /// Refuses the first vector that is not finite or not of length 1.
-pub fn check_units<T: Real>(column: &'static str, vectors: &[Vec3<T>]) -> Result<(), Error> {
-    check_all(column, vectors, "a finite unit vector (to 1e-4)", |v| {
-        (dot(v, v).sqrt() - 1.0).abs() <= UNIT_TOLERANCE
-    })
+pub fn check_units<T: Scalar>(column: &'static str, vectors: &[Vec3<T>]) -> Result<(), Error> {
+    check_rows(column, vectors.iter().copied(), false)
 }
 
-fn check_all<T: Real>(
+/// Refuses the first vector that is not finite, not of length 1 or, for `normals`, does not point up.
+pub(crate) fn check_rows<T: Scalar>(
     column: &'static str,
-    vectors: &[Vec3<T>],
-    expected: &'static str,
-    holds: impl Fn(Vec3<f64>) -> bool,
+    vectors: impl Iterator<Item = Vec3<T>>,
+    normals: bool,
 ) -> Result<(), Error> {
-    for (k, v) in vectors.iter().enumerate() {
-        let v = v.map(Real::to_f64);
-        if !holds(v) {
-            return Err(Error::Row { row: k + 1, column, x: v[0], y: v[1], z: v[2], expected });
+    for (k, v) in vectors.enumerate() {
+        let [x, y, z] = v.map(Scalar::to_f64);
+        let refuse = |expected| Err(Error::Row { row: k + 1, column, x, y, z, expected });
+        let length = (x * x + y * y + z * z).sqrt();
+        // What is not a number fails this as well.
+        if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+            return refuse("a finite unit vector (to 1e-4)");
+        }
+        if normals && z <= 0.0 {
+            return refuse("a normal that points up");
         }
     }
     Ok(())

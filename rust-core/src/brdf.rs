@@ -3,9 +3,9 @@
 //! Directions are unit vectors away from the surface: `i` to the source, `o` to the observer,
 //! `n` the wave normal, in coordinates with z up. A direction below the horizon of `n` gives 0.
 
-use crate::Real;
 use crate::optics::Reflectance;
-use crate::real::{Vec3, dot};
+use crate::real::{Vec3, Wide, dot, each};
+use crate::{Real, Scalar};
 use crate::shadowing::hidden;
 use crate::slopes::gram_charlier;
 use glam::DVec2;
@@ -13,6 +13,34 @@ use glam::DVec2;
 /// The normal of a flat sea.
 pub fn up<T: Real>() -> Vec3<T> {
     [T::of(0.0), T::of(0.0), T::of(1.0)]
+}
+
+/// The cosine of the angle to a wave normal, or a level surface's.
+#[inline(always)]
+pub(crate) fn cosine<T: Real>(v: Vec3<T>, n: Option<Vec3<T>>) -> T {
+    match n {
+        Some(n) => dot(v, n),
+        None => v[2],
+    }
+}
+
+/// `x/cos^2`, finite.
+#[inline(always)]
+fn over_square<T: Real>(x: T, cos: T) -> T {
+    let cos = T::max(cos, T::SMALL);
+    x / (cos * cos)
+}
+
+/// The sine of a cosine's angle.
+#[inline(always)]
+fn sine<T: Real>(cos: T) -> T {
+    T::max(T::of(1.0) - cos * cos, T::of(0.0)).sqrt()
+}
+
+/// The horizontal part of `v` seen from `n`.
+#[inline(always)]
+fn leaning<T: Real>(v: Vec3<T>, n: Vec3<T>) -> [T; 2] {
+    [v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]]
 }
 
 /// Coefficients of the facets' lobe, f_SW of Eq. 56: what evaluation needs and nothing else.
@@ -23,19 +51,23 @@ pub struct Facets<T: Real> {
     pub cos_wind: T::Wide,
     /// Sine of phi_W.
     pub sin_wind: T::Wide,
+    /// The wind comes from the azimuth 0: nothing is to be turned.
+    pub along_x: bool,
     /// Standard deviation of the facets' slope along the wind (Eq. 74).
-    pub sigma_u: T::Wide,
+    pub sigma_u: T,
     /// And across it (Eq. 75).
-    pub sigma_c: T::Wide,
+    pub sigma_c: T,
+    /// 1/sigma_u.
+    pub inv_sigma_u: T::Wide,
+    /// 1/sigma_c.
+    pub inv_sigma_c: T::Wide,
     /// `1/(2 pi sigma_u sigma_c)` times the 1/4 (or, as printed, pi/4) of Eq. 56.
     pub scale: T,
     /// Skewness c21 of Eq. 78.
     pub c21: T,
     /// Skewness c03 of Eq. 78.
     pub c03: T,
-    /// Cosine of the tilt beyond which `exp(-xi^2/2 sigma^2)/cos^4 xi` would rise again ([`steep_facets`]).
-    pub steep_cos: T,
-    /// 1/cos^4 of that tilt.
+    /// 1/cos^4 of the tilt beyond which `exp(-xi^2/2 sigma^2)/cos^4 xi` would rise again ([`steep_gain`]).
     pub steep_gain: T,
     /// sigma of Eq. 64.
     pub sigma_shadow: T,
@@ -46,7 +78,7 @@ pub struct Facets<T: Real> {
     /// And across the wind.
     pub proposal_c: T,
     /// rho of Eqs. 62-63.
-    pub reflectance: Reflectance<T::Wide>,
+    pub reflectance: Reflectance<T>,
     /// The density is Gaussian in slopes, not in tilt angles.
     pub slope_measure: bool,
     /// Eq. 78 is applied.
@@ -63,143 +95,157 @@ pub struct Facets<T: Real> {
 #[derive(Debug, Clone, Copy)]
 struct Geometry<T: Real> {
     /// cos theta_i, cos theta_r (Eq. 60).
-    pub cos: [T; 2],
+    cos: [T; 2],
     /// cos zeta (Eq. 61).
-    pub cos_zeta: T::Wide,
-    /// cos xi (Eq. 71).
-    pub cos_xi: T::Wide,
+    cos_zeta: T,
+    /// 1/cos^2 xi (Eq. 71).
+    inv_cos2: T,
     /// Sine-like and cosine-like parts of the signed tilt xi_u from normal to half vector (Eqs. 69-71).
-    pub tilt_u: [T::Wide; 2],
+    tilt_u: [T::Wide; 2],
     /// And of xi_c.
-    pub tilt_c: [T::Wide; 2],
+    tilt_c: [T::Wide; 2],
+    /// Horizontal parts of the two directions, seen from the normal.
+    seen: [[T; 2]; 2],
 }
 
 impl<T: Real> Facets<T> {
+    /// About a wave normal, or a level surface's.
     #[inline(always)]
-    fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> Geometry<T> {
+    fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Option<Vec3<T>>) -> Geometry<T> {
+        let (x, y, z) = (T::Wide::sum(i[0], o[0]), T::Wide::sum(i[1], o[1]), T::Wide::sum(i[2], o[2]));
+        let h = each([x, y, z], T::Wide::narrow);
+        let length2 = dot(h, h);
+        let cos_zeta = T::min(T::of(0.5) * length2.sqrt(), T::of(1.0));
+        let [hu, hc] = self.wind_frame(x, y);
+        let Some(n) = n else {
+            return Geometry {
+                cos: [i[2], o[2]],
+                cos_zeta,
+                inv_cos2: over_square(length2, h[2]),
+                tilt_u: [hu, z],
+                tilt_c: [hc, z],
+                seen: [[i[0], i[1]], [o[0], o[1]]],
+            };
+        };
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
-        let [iw, ow, nw] = [i, o, n].map(|v| v.map(T::wide));
-        let hw = [iw[0] + ow[0], iw[1] + ow[1], iw[2] + ow[2]];
-        let length = Real::max(dot(hw, hw).sqrt(), T::Wide::of(1e-300));
-        let [hu, hc] = self.wind_frame(hw[0], hw[1]);
-        let [nu, nc] = self.wind_frame(nw[0], nw[1]);
-        let [xu, xc] = self.wind_frame(hw[0] * nw[2] - hw[2] * nw[0], hw[1] * nw[2] - hw[2] * nw[1]);
-        let zz = hw[2] * nw[2];
+        let [nx, ny, nz] = each(n, T::Wide::widen);
+        let [nu, nc] = self.wind_frame(nx, ny);
+        let [xu, xc] = self.wind_frame(x * nz - z * nx, y * nz - z * ny);
+        let zz = z * nz;
         Geometry {
             cos: [dot(i, n), dot(o, n)],
-            cos_zeta: Real::min(T::Wide::of(0.5) * length, T::Wide::of(1.0)),
-            cos_xi: dot(hw, nw) / length,
+            cos_zeta,
+            inv_cos2: over_square(length2, dot(h, n)),
             tilt_u: [xu, zz + hu * nu],
             tilt_c: [xc, zz + hc * nc],
+            seen: [leaning(i, n), leaning(o, n)],
         }
     }
 
     /// Components along W_u and W_c (Eq. 68) of a horizontal vector.
     #[inline(always)]
     fn wind_frame(&self, x: T::Wide, y: T::Wide) -> [T::Wide; 2] {
+        if self.along_x {
+            return [x, y];
+        }
         [x * self.cos_wind + y * self.sin_wind, y * self.cos_wind - x * self.sin_wind]
     }
 
     /// A tilt in the density's measure: the angle, or its tangent; far out where there is none.
     #[inline(always)]
     fn measure(&self, [sine, cosine]: [T::Wide; 2]) -> T::Wide {
-        if self.slope_measure {
-            let (far, zero) = (T::Wide::of(1e6), T::Wide::of(0.0));
-            T::Wide::select(T::Wide::lt(zero, cosine), sine / Real::max(cosine, T::Wide::TINY), far)
-        } else {
-            Real::atan2(sine, cosine)
-        }
+        if self.slope_measure { sine.slope(cosine) } else { sine.atan2(cosine) }
     }
 
     /// f_SW (Eq. 56), 1/sr.
     #[inline(always)]
-    pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
-        let g = self.geometry(i, o, n);
+    pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
+        let g = self.geometry(i, o, n.into());
         let zero = T::of(0.0);
         let lit = T::lt(zero, g.cos[0]) & T::lt(zero, g.cos[1]);
-        let value = T::min(self.density(&g), T::MAX) * self.visible_reflectance(&g, i, o, n);
+        let value = T::min(self.density(&g), T::MAX) * self.visible_reflectance(&g);
         T::select(lit, T::min(value, T::MAX), zero)
     }
 
     /// `p/cos^4 xi` (Eqs. 72-73, 78-79) with the constants of Eq. 56.
     #[inline(always)]
     fn density(&self, g: &Geometry<T>) -> T {
-        // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
-        let far = T::Wide::of(1e3);
-        let clamp = |x: T::Wide| Real::max(Real::min(x, far), -far);
-        let u = clamp(-self.measure(g.tilt_u) / self.sigma_u);
-        let c = clamp(self.measure(g.tilt_c) / self.sigma_c);
-        self.scale * T::narrow(self.tilt_density(u, c, g.cos_xi))
+        let u = -(self.measure(g.tilt_u) * self.inv_sigma_u);
+        let c = self.measure(g.tilt_c) * self.inv_sigma_c;
+        self.scale * self.tilt_density(u, c, g.inv_cos2)
     }
 
     /// `p/cos^4 xi` with the constants of Eq. 56, of facets along a unit `h` about the wave normal `n`.
-    pub(crate) fn density_along(&self, h: Vec3<T>, n: Vec3<T>) -> T {
-        self.density(&self.geometry(h, h, n))
+    pub(crate) fn density_along(&self, h: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
+        self.density(&self.geometry(h, h, n.into()))
     }
 
     /// `rho G`, 0 where `n` turns from one of the directions.
-    pub(crate) fn shadowed_reflectance(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
-        let g = self.geometry(i, o, n);
+    pub(crate) fn shadowed_reflectance(
+        &self,
+        i: Vec3<T>,
+        o: Vec3<T>,
+        n: impl Into<Option<Vec3<T>>>,
+    ) -> T {
+        let g = self.geometry(i, o, n.into());
         let [ci, cr] = g.cos;
         let zero = T::of(0.0);
         let lit = T::lt(zero, ci) & T::lt(zero, cr);
-        T::select(lit, self.visible_reflectance(&g, i, o, n) * ci * cr, zero)
+        T::select(lit, self.visible_reflectance(&g) * ci * cr, zero)
     }
 
-    /// The same over its constants, for tilts U and C in standard deviations.
+    /// The same over its constants, for tilts U and C in standard deviations and 1/cos^2 of the whole tilt.
     #[inline(always)]
-    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, cos_xi: T::Wide) -> T::Wide {
-        let (u, c) = if self.as_printed { (u.abs(), c.abs()) } else { (u, c) };
-        let cos2 = cos_xi * cos_xi;
-        let gauss = Real::exp(T::Wide::of(-0.5) * (u * u + c * c));
-        let mut p = gauss / Real::max(cos2 * cos2, T::Wide::TINY);
+    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, inv_cos2: T) -> T {
+        let gauss = (T::Wide::of(-0.5) * (u * u + c * c)).exp();
+        let inv_cos4 = inv_cos2 * inv_cos2;
+        let mut p = gauss * inv_cos4;
         if !self.slope_measure && !self.as_printed {
-            let held = Real::max(gauss * self.steep_gain.wide(), T::Wide::of(STEEP_FLOOR));
-            p = T::Wide::select(T::Wide::lt(cos_xi, self.steep_cos.wide()), Real::min(p, held), p);
+            let held = T::max(gauss * self.steep_gain, T::of(STEEP_FLOOR));
+            p = T::select(T::lt(self.steep_gain, inv_cos4), T::min(p, held), p);
         }
         if self.gram_charlier {
-            let correction = gram_charlier(self.c21.wide(), self.c03.wide(), u, c, self.as_printed);
-            p = p * Real::max(correction, T::Wide::of(0.0));
+            // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
+            let far = T::of(1e3);
+            let u = T::max(T::min(u.narrow(), far), -far);
+            let c = T::max(T::min(c.narrow(), far), -far);
+            let (u, c) = if self.as_printed { (u.abs(), c.abs()) } else { (u, c) };
+            p = p * T::max(gram_charlier(self.c21, self.c03, u, c, self.as_printed), T::of(0.0));
         }
         p
     }
 
     /// `rho G/(cos theta_i cos theta_r)` (Eqs. 61-67).
     #[inline(always)]
-    fn visible_reflectance(&self, g: &Geometry<T>, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+    fn visible_reflectance(&self, g: &Geometry<T>) -> T {
         let [ci, cr] = g.cos;
-        let rho = T::narrow(self.reflectance.eval(g.cos_zeta));
-        let one = T::of(1.0);
+        let rho = self.reflectance.eval(g.cos_zeta);
         let mut area = ci * cr;
         if self.shadowing {
-            let sine = |c: T| T::max(one - c * c, T::of(0.0)).sqrt();
             area = area
                 + cr * hidden(ci, self.sigma_shadow * sine(ci))
                 + ci * hidden(cr, self.sigma_shadow * sine(cr));
         }
         let value = rho / T::max(area, T::TINY);
-        if self.bounded { T::min(value, self.visible_bound(g.cos, i, o, n)) } else { value }
+        if self.bounded { T::min(value, self.visible_bound(g)) } else { value }
     }
 
     /// `bound/((1 + Lambda) cos_i cos_r)`, Lambda the larger of the two directions' by the facets' own
     /// slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
     /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1.
     #[inline(always)]
-    fn visible_bound(&self, [ci, cr]: [T; 2], i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
-        let sigma = [self.sigma_u, self.sigma_c].map(T::narrow);
-        let visible = |c: T, v: Vec3<T>| {
-            let [a, b] = self.stretched(v, n, sigma);
-            c + hidden(c, T::of(std::f64::consts::SQRT_2) * (a * a + b * b).sqrt())
-        };
-        self.bound / T::max(T::max(visible(ci, i) * cr, visible(cr, o) * ci), T::TINY)
+    fn visible_bound(&self, g: &Geometry<T>) -> T {
+        let ([ci, cr], [i, o]) = (g.cos, g.seen);
+        let (shown_i, shown_o) = (ci + hidden(ci, self.spread_along(i)), cr + hidden(cr, self.spread_along(o)));
+        self.bound / T::max(T::max(shown_i * cr, shown_o * ci), T::TINY)
     }
 
-    /// The horizontal part of `v` seen from `n`, stretched by standard deviations along and across the wind.
+    /// sqrt 2 times the facets' standard deviation along a direction, times its sine.
     #[inline(always)]
-    fn stretched(&self, v: Vec3<T>, n: Vec3<T>, [sigma_u, sigma_c]: [T; 2]) -> [T; 2] {
-        let (x, y) = (v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]);
-        let [u, c] = self.wind_frame(x.wide(), y.wide());
-        [T::narrow(u) * sigma_u, T::narrow(c) * sigma_c]
+    fn spread_along(&self, [x, y]: [T; 2]) -> T {
+        let [u, c] = self.wind_frame(T::Wide::widen(x), T::Wide::widen(y));
+        let (u, c) = (u.narrow() * self.sigma_u, c.narrow() * self.sigma_c);
+        T::of(std::f64::consts::SQRT_2) * (u * u + c * c).sqrt()
     }
 }
 
@@ -232,48 +278,51 @@ pub struct Lobe<T: Real> {
 impl<T: Real> Lobe<T> {
     /// f, 1/sr.
     #[inline(always)]
-    pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+    pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
         self.eval_parts(i, o, n, Parts::ALL)
     }
 
     /// f of some of its parts, each with its share of the surface, 1/sr.
     #[inline(always)]
-    pub fn eval_parts(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>, parts: Parts) -> T {
-        let zero = T::of(0.0);
+    pub fn eval_parts(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
+        let (zero, n) = (T::of(0.0), n.into());
         let mut f = zero;
         if parts.facets {
             f = (T::of(1.0) - self.whitecap_fraction) * self.facets.eval(i, o, n);
         }
         if parts.whitecaps {
-            let lit = T::lt(zero, dot(i, n)) & T::lt(zero, dot(o, n));
+            let lit = T::lt(zero, cosine(i, n)) & T::lt(zero, cosine(o, n));
             f = f + T::select(lit, self.whitecap_fraction * self.whitecap_brdf, zero);
         }
         f
     }
 }
 
-impl Lobe<f64> {
-    /// The same coefficients, rounded to another number type.
+impl<S: Scalar> Lobe<S> {
+    /// The same coefficients as another number type.
     pub fn cast<T: Real>(&self) -> Lobe<T> {
         let f = &self.facets;
+        let of = |x: S| T::of(x.to_f64());
         Lobe {
             facets: Facets {
                 cos_wind: T::Wide::of(f.cos_wind),
                 sin_wind: T::Wide::of(f.sin_wind),
-                sigma_u: T::Wide::of(f.sigma_u),
-                sigma_c: T::Wide::of(f.sigma_c),
-                scale: T::of(f.scale),
-                c21: T::of(f.c21),
-                c03: T::of(f.c03),
-                steep_cos: T::of(f.steep_cos),
-                steep_gain: T::of(f.steep_gain),
-                sigma_shadow: T::of(f.sigma_shadow),
-                bound: T::of(f.bound),
-                proposal_u: T::of(f.proposal_u),
-                proposal_c: T::of(f.proposal_c),
+                along_x: f.along_x,
+                sigma_u: of(f.sigma_u),
+                sigma_c: of(f.sigma_c),
+                inv_sigma_u: T::Wide::of(f.inv_sigma_u),
+                inv_sigma_c: T::Wide::of(f.inv_sigma_c),
+                scale: of(f.scale),
+                c21: of(f.c21),
+                c03: of(f.c03),
+                steep_gain: of(f.steep_gain),
+                sigma_shadow: of(f.sigma_shadow),
+                bound: of(f.bound),
+                proposal_u: of(f.proposal_u),
+                proposal_c: of(f.proposal_c),
                 reflectance: Reflectance {
-                    normal: T::Wide::of(f.reflectance.normal),
-                    ior2: T::Wide::of(f.reflectance.ior2),
+                    normal: of(f.reflectance.normal),
+                    excess: of(f.reflectance.excess),
                     exact: f.reflectance.exact,
                 },
                 slope_measure: f.slope_measure,
@@ -282,9 +331,25 @@ impl Lobe<f64> {
                 bounded: f.bounded,
                 as_printed: f.as_printed,
             },
-            whitecap_fraction: T::of(self.whitecap_fraction),
-            whitecap_brdf: T::of(self.whitecap_brdf),
+            whitecap_fraction: of(self.whitecap_fraction),
+            whitecap_brdf: of(self.whitecap_brdf),
         }
+    }
+}
+
+impl<S: Scalar> Facets<S> {
+    /// Turns the wind to another azimuth, in degrees.
+    pub(crate) fn turn(&mut self, degrees: f64) {
+        (self.sin_wind, self.cos_wind) = degrees.to_radians().sin_cos();
+        self.along_x = self.sin_wind == 0.0 && self.cos_wind == 1.0;
+    }
+
+    /// Gives the facets other standard deviations of slope, along and across the wind, and Eq. 56's constant with the 2 pi
+    /// of the density, `scale`.
+    pub(crate) fn set_sigmas(&mut self, [u, c]: [f64; 2], scale: f64) {
+        (self.sigma_u, self.sigma_c) = (S::of(u), S::of(c));
+        (self.inv_sigma_u, self.inv_sigma_c) = (1.0 / u, 1.0 / c);
+        self.scale = S::of(scale / (u * c));
     }
 }
 
@@ -322,17 +387,15 @@ impl Facets<f64> {
 /// What steep facets may count beside level ones, whatever their density.
 pub const STEEP_FLOOR: f64 = 1e-6;
 
-/// Where `exp(-xi^2/2 sigma^2)/cos^4 xi` starts to rise again (`xi/sigma^2 = 4 tan xi`), as a cosine,
-/// and 1/cos^4 there, which is kept beyond (or [`STEEP_FLOOR`] where that is more). A Gaussian of tilt
-/// angles is finite where facets stand upright and 1/cos^4 is not: unbounded, the albedo would pass 1
-/// in a hurricane within a tenth of a degree of the horizon. Slopes need no such bound.
-pub(crate) fn steep_facets(sigma: f64) -> [f64; 2] {
+/// 1/cos^4 where `exp(-xi^2/2 sigma^2)/cos^4 xi` starts to rise again (`xi/sigma^2 = 4 tan xi`), which is kept beyond (or
+/// [`STEEP_FLOOR`] where that is more). A Gaussian of tilt angles is finite where facets stand upright and 1/cos^4 is not:
+/// unbounded, the albedo would pass 1 in a hurricane within a tenth of a degree of the horizon. Slopes need no such bound.
+pub(crate) fn steep_gain(sigma: f64) -> f64 {
     let rises = |xi: f64| 4.0 * xi.tan() * sigma * sigma > xi;
     let (mut low, mut high) = (0.1, std::f64::consts::FRAC_PI_2);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if rises(middle) { high = middle } else { low = middle }
     }
-    let cos = high.cos();
-    [cos, cos.powi(-4)]
+    high.cos().powi(-4)
 }

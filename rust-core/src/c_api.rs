@@ -8,10 +8,9 @@ use std::ffi::{CStr, CString, c_char, c_double, c_float};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::batch::{Rows, check_units};
-use crate::brdf::up;
 use crate::real::Vec3;
 use crate::vocabulary::{Builder, Value};
-use crate::{EmpiricalLobe, Error, Lobe, Real, Surface, Table, Water};
+use crate::{EmpiricalLobe, Error, Lobe, Scalar, Surface, Table, Water};
 use std::path::PathBuf;
 
 /// What a call came to. Anything but OK leaves outputs untouched and a message in
@@ -292,7 +291,7 @@ enum Quantity {
 
 /// # Safety
 /// The pointers are null or hold `rows` triples, `out` `rows` numbers.
-unsafe fn batch<T: Real>(
+unsafe fn batch<T: Scalar>(
     sea: &ProbWater,
     lobe: &Lobe<T>,
     quantity: Quantity,
@@ -456,7 +455,7 @@ pub unsafe extern "C" fn prob_water_sample(
                 return Err((ProbWaterStatus::Row, message));
             }
             for row in 0..rows {
-                let sample = s.lobe.sample(i[row], up(), u[row]);
+                let sample = s.lobe.sample(i[row], None, u[row]);
                 let value = match &s.empirical {
                     Some(table) if sample.pdf > 0.0 => table.eval(i[row], sample.direction),
                     _ => sample.f,

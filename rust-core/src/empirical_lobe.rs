@@ -37,7 +37,7 @@ use crate::real::Vec3;
 use crate::shadowing::hidden;
 use crate::table::Table;
 use crate::waves::{Draws, Numbers};
-use crate::{Across, Engagement, Error, Exact, Lobe, Real, Statistics, Water};
+use crate::{Across, Engagement, Error, Exact, Lobe, Real, Scalar, Statistics, Water};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::num::NonZeroU32;
@@ -186,13 +186,13 @@ impl EmpiricalLobe {
     }
 
     /// f, 1/sr (Eq. 90), for unit vectors to source and observer; 0 at or below the horizon.
-    pub fn eval<T: Real>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
+    pub fn eval<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
         self.eval_parts(i, o, Parts::ALL)
     }
 
     /// f of some of its parts, 1/sr.
     #[inline]
-    pub fn eval_parts<T: Real>(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
+    pub fn eval_parts<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
         let zero = T::of(0.0);
         if !(zero.below(i[2]) && zero.below(o[2])) {
             return zero;
@@ -218,7 +218,7 @@ impl EmpiricalLobe {
 
     /// What the facets would reflect on level water, over rho, as the logarithm of their density and the rest: towards the
     /// observer with [`Across::Slopes`], else towards what is in the plane of it.
-    fn level<T: Real>(&self, i: Vec3<T>, o: Vec3<T>, place: &Place<T>) -> (T, T) {
+    fn level<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>, place: &Place<T>) -> (T, T) {
         let one = T::of(1.0);
         let facets = &self.sampler.facets;
         let (slope, cos, sin) = match self.across {
@@ -255,7 +255,7 @@ impl EmpiricalLobe {
     }
 
     /// The logarithm of the facets' density along a half vector of a slope upwind and crosswind.
-    fn ln_density<T: Real>(&self, slope: [T; 2]) -> T {
+    fn ln_density<T: Scalar>(&self, slope: [T; 2]) -> T {
         let middle = 0.5 * (DENSITIES - 1) as f64;
         let sigmas = self.spreads.sigmas();
         let tilt = [0, 1].map(|k| Real::atan2(slope[k], T::of(1.0)) * T::of(1.0 / sigmas[k]));
@@ -370,14 +370,14 @@ impl EmpiricalLobe {
     }
 
     /// rho between two directions (Eqs. 61-63).
-    fn reflectance<T: Real>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
+    fn reflectance<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
         let half = T::of(0.5) * (0..3).fold(T::of(0.0), |sum, k| sum + (i[k] + o[k]) * (i[k] + o[k])).sqrt();
         let facets = &self.sampler.facets.reflectance;
         T::of(facets.eval(half.to_f64().min(1.0)))
     }
 
     #[inline]
-    fn place<T: Real>(&self, i: Vec3<T>, o: Vec3<T>) -> Place<T> {
+    fn place<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> Place<T> {
         let [zero, one] = [0.0, 1.0].map(T::of);
         let facets = &self.sampler.facets;
         let [cos_wind, sin_wind] = [facets.cos_wind, facets.sin_wind].map(T::of);
@@ -483,7 +483,7 @@ fn half(x: f64) -> f32 {
 }
 
 /// A place on an axis of so many steps: the step and how far along it.
-fn split<T: Real>(x: T, steps: usize) -> (usize, T) {
+fn split<T: Scalar>(x: T, steps: usize) -> (usize, T) {
     let k = (x.to_f64() as usize).min(steps - 1);
     (k, T::min(x - T::of(k as f64), T::of(1.0)))
 }
@@ -503,7 +503,7 @@ impl Place<f64> {
     }
 }
 
-impl<T: Real> Place<T> {
+impl<T: Scalar> Place<T> {
     /// Values between nodes over all three axes.
     fn in_plane<const N: usize>(&self, cells: &[[f32; 3]], of: impl Fn(&[f32; 3]) -> [f32; N]) -> [T; N] {
         let (k, t) = self.theta;

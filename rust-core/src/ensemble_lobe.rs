@@ -15,7 +15,7 @@
 //! With [`Average::Report`] f is the report's mean instead, without `(N.o)/o_z`. Then waves count most just before they
 //! turn from the observer: the mean is Gauss and Legendre's over seven slopes up to there, in the observer's plane.
 
-use crate::brdf::{Parts, up};
+use crate::brdf::Parts;
 use crate::characteristic::Component;
 use crate::facet_density::{Cell, FacetDensity};
 use crate::slope_density::{Slopes, WindFrame};
@@ -117,7 +117,7 @@ impl EnsembleLobe {
         }
         let lobe = &self.water.lobe;
         let Some(waves) = &self.waves else {
-            return self.sampler.eval_parts(i.into(), o.into(), up(), parts);
+            return self.sampler.eval_parts(i.into(), o.into(), None, parts);
         };
         let report = self.water.parameters.average == Average::Report;
         let half = i + o;
@@ -167,7 +167,7 @@ impl EnsembleLobe {
             let slope = cell.mean + along * spread * x;
             let n = DVec3::from((-self.wind.to_world(slope), 1.0))
                 / (1.0 + slope.length_squared() + across).sqrt();
-            let g = self.water.lobe.facets.shadowed_reflectance(i.into(), o.into(), n.into());
+            let g = self.water.lobe.facets.shadowed_reflectance(i.into(), o.into(), n.to_array());
             weight * gauss(x) * g / n.dot(o).max(TINY)
         };
         half * CUT_RULE.iter().map(visible).sum::<f64>()

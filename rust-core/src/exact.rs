@@ -11,7 +11,6 @@
 //! Smith's for heights that source and observer see together, `(1 + L_i)/(1 + L_i + L_o)`, with the drawn slopes'
 //! variance. The ray cast of [`crate::Ensemble`] is the reference for low views.
 
-use crate::brdf::up;
 use crate::characteristic::Component;
 use crate::ensemble::{QUANTILES, Statistics};
 use crate::facet_density::{Cell, FacetDensity};
@@ -88,7 +87,7 @@ impl Exact {
                 let slope = self.wind.to_wind(-half.truncate() / half.z);
                 Cell::new(slopes, &self.water, self.wind, slope).density
             }
-            None => self.water.lobe.facets.density_along(half.normalize().into(), up()),
+            None => self.water.lobe.facets.density_along(half.normalize().into(), None),
         }
     }
 
@@ -169,7 +168,7 @@ impl Exact {
         let mut means = Means::default();
         self.integrate(slopes, i, o, |s, weight, density, capped| {
             let n = DVec3::from(normal(s.into()));
-            let f = lobe.facets.eval(i.into(), o.into(), n.into());
+            let f = lobe.facets.eval(i.into(), o.into(), n.to_array());
             let weight = weight * (density - capped) * shown(s, i);
             means.f += weight * f;
             means.f_cos += weight * f * n.dot(o);

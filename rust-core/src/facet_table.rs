@@ -2,7 +2,7 @@
 
 use crate::brdf::{BOUND_SLACK, Facets};
 use crate::slopes;
-use crate::{Real, Water};
+use crate::{Scalar, Water};
 use rayon::prelude::*;
 
 /// Natural logarithms of the footprints in m between which facets are tabulated: from a third of a millimetre, where the
@@ -51,18 +51,15 @@ impl FacetTable {
     }
 
     /// Gives the facets another footprint, in m; infinite, or not a number, is the largest.
-    pub fn set<T: Real>(&self, facets: &mut Facets<T>, footprint: f64) {
+    pub fn set<T: Scalar>(&self, facets: &mut Facets<T>, footprint: f64) {
         let place = ((footprint.ln() - RANGE[0]) / Self::step()).clamp(0.0, (NODES - 1) as f64);
         let place = if place.is_nan() { (NODES - 1) as f64 } else { place };
         let node = (place as usize).min(NODES - 2);
         let (a, b, t) = (&self.rows[node], &self.rows[node + 1], place - node as f64);
         let [sigma_u, sigma_c, gain, bound, u, c, ..]: Row =
             std::array::from_fn(|k| a[k] + t * (b[k] - a[k]));
-        facets.sigma_u = T::Wide::of(sigma_u);
-        facets.sigma_c = T::Wide::of(sigma_c);
-        facets.scale = T::of(self.scale / (sigma_u * sigma_c));
+        facets.set_sigmas([sigma_u, sigma_c], self.scale);
         facets.steep_gain = T::of(gain);
-        facets.steep_cos = T::of(gain.powf(-0.25));
         facets.bound = T::of(bound);
         facets.bounded = self.bounded;
         facets.proposal_u = T::of(u);

@@ -1,8 +1,8 @@
 //! The BRDF of a level surface that reflects, place by place, as one drawn sea does: `surface = "instance"`.
 
-use crate::brdf::Parts;
+use crate::brdf::{Parts, cosine};
 use crate::ensemble::Ensemble;
-use crate::real::{Vec3, dot};
+use crate::real::Vec3;
 use crate::surface::Surface;
 use crate::waves::Component;
 use crate::{Lobe, Real, Water};
@@ -73,9 +73,10 @@ impl InstanceLobe {
 impl<T: Real> Lobe<T> {
     /// `f cos(theta_o)` of some of its parts, of a level surface whose waves have the normal `n` here:
     /// `f_N (N.i)(N.o)/(N_z cos theta_i)`, 1/sr; 0 at or below the horizon.
-    pub fn on_wave(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>, parts: Parts) -> T {
-        let zero = T::of(0.0);
-        let seen = dot(i, n) * dot(o, n) / T::max(n[2] * i[2], T::TINY);
+    pub fn on_wave(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
+        let (zero, n) = (T::of(0.0), n.into());
+        let level = n.map_or(T::of(1.0), |n| n[2]);
+        let seen = cosine(i, n) * cosine(o, n) / T::max(level * i[2], T::TINY);
         let value = T::min(self.eval_parts(i, o, n, parts) * T::max(seen, zero), T::MAX);
         T::select(T::lt(zero, i[2]) & T::lt(zero, o[2]), value, zero)
     }

@@ -2,7 +2,7 @@
 //! on level water. The mean over drawn waves is close to it, and their ratio changes slowly with wind, footprint and
 //! directions, where the mean itself changes by orders of magnitude.
 
-use crate::brdf::{Facets, up};
+use crate::brdf::Facets;
 use crate::characteristic::variances;
 use crate::exact::Exact;
 use crate::facet_density;
@@ -34,14 +34,14 @@ impl Spreads {
         let [drawn_u, drawn_c, _] = variances(&water.waves());
         let [facets_u, facets_c] = water.variances;
         let all = water.parameters.facets(&water.wind, water.ior, [facets_u + drawn_u, facets_c + drawn_c]);
-        let reflectance = Reflectance { normal: 1.0, ior2: 1.0, exact: false };
+        let reflectance = Reflectance { normal: 1.0, excess: 0.0, exact: false };
         let drawn = DVec2::new(drawn_u, drawn_c).powf(0.5);
         Self { all: Facets { reflectance, bounded: false, ..all }, drawn }
     }
 
     /// The same sea under a wind from another azimuth, in degrees.
     pub fn turned(mut self, degrees: f64) -> Self {
-        (self.all.sin_wind, self.all.cos_wind) = degrees.to_radians().sin_cos();
+        self.all.turn(degrees);
         self
     }
 
@@ -90,7 +90,7 @@ impl Spreads {
         if i[2] <= 0.0 || o[2] <= 0.0 {
             return 0.0;
         }
-        self.all.shadowed_reflectance(i, o, up()) / (i[2] * o[2])
+        self.all.shadowed_reflectance(i, o, None) / (i[2] * o[2])
     }
 
     /// Of a half vector's slope, upwind and crosswind, the share that the waves which carry its facets have, on average.
@@ -141,7 +141,7 @@ pub(crate) fn ln_densities(exact: &Exact, spreads: &Spreads, rows: usize) -> (Ve
         let slope = (place * sigmas).map(f64::tan);
         let density = match &table {
             Some(table) => table.at(slope).density,
-            None => spreads.all.density_along(normal(spreads.to_world(slope).into()), up()),
+            None => spreads.all.density_along(normal(spreads.to_world(slope).into()), None),
         };
         density.ln().max(NOTHING) + 0.5 * place.length_squared()
     };

@@ -51,8 +51,8 @@ pub fn normal_reflectance(ior: f64) -> f64 {
 pub struct Reflectance<T> {
     /// rho_n, Eq. 62.
     pub normal: T,
-    /// n^2.
-    pub ior2: T,
+    /// n^2 - 1.
+    pub excess: T,
     /// Fresnel's equations instead of Schlick's.
     pub exact: bool,
 }
@@ -62,7 +62,7 @@ impl<T: Real> Reflectance<T> {
     pub fn new(ior: f64, fresnel: Fresnel) -> Self {
         Self {
             normal: T::of(normal_reflectance(ior)),
-            ior2: T::of(ior * ior),
+            excess: T::of(ior * ior - 1.0),
             exact: fresnel == Fresnel::Exact,
         }
     }
@@ -84,13 +84,12 @@ impl<T: Real> Reflectance<T> {
     /// Fresnel's equations; the differences of near-equal numbers are multiplied out.
     #[inline(always)]
     fn exact(&self, cos: T) -> T {
-        let one = T::of(1.0);
-        let excess = self.ior2 - one;
+        let (one, excess) = (T::of(1.0), self.excess);
         let g = T::sqrt(excess + cos * cos);
         let s = cos + g;
-        let p = self.ior2 * cos + g;
+        let p = (excess + one) * cos + g;
         let rs = excess / T::max(s * s, T::TINY);
-        let rp = excess * ((self.ior2 + one) * cos * cos - one) / T::max(p * p, T::TINY);
+        let rp = excess * ((excess + one + one) * cos * cos - one) / T::max(p * p, T::TINY);
         T::of(0.5) * (rs * rs + rp * rp)
     }
 }

@@ -1,4 +1,4 @@
-use crate::brdf::{Facets, Lobe, steep_facets};
+use crate::brdf::{Facets, Lobe, steep_gain};
 use crate::error::refuse;
 use crate::optics::{self, Fresnel, Reflectance};
 use crate::spectrum::Spectrum;
@@ -176,8 +176,7 @@ impl Water {
     /// The same sea under a wind from another azimuth, in degrees.
     pub(crate) fn turned(mut self, degrees: f64) -> Self {
         self.parameters.wind_direction = degrees;
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        (self.lobe.facets.sin_wind, self.lobe.facets.cos_wind) = (sin, cos);
+        self.lobe.facets.turn(degrees);
         self
     }
 
@@ -256,21 +255,21 @@ impl Parameters {
     pub(crate) fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
         let [sigma_u, sigma_c] = variances.map(f64::sqrt);
         let [c21, c03] = slopes::skewness(wind);
-        let (sin_wind, cos_wind) = self.wind_direction.to_radians().sin_cos();
         let as_printed = self.readings == Readings::AsPrinted;
         let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
-        let [steep_cos, steep_gain] = steep_facets(sigma_u.max(sigma_c));
-        let slope_measure = self.slope_measure == SlopeMeasure::Slope;
+                let slope_measure = self.slope_measure == SlopeMeasure::Slope;
         let mut facets = Facets {
-            cos_wind,
-            sin_wind,
-            sigma_u,
-            sigma_c,
-            scale: eq_56 / (std::f64::consts::TAU * sigma_u * sigma_c),
+            cos_wind: 1.0,
+            sin_wind: 0.0,
+            along_x: true,
+            sigma_u: 1.0,
+            sigma_c: 1.0,
+            inv_sigma_u: 1.0,
+            inv_sigma_c: 1.0,
+            scale: 1.0,
             c21,
             c03,
-            steep_cos,
-            steep_gain,
+            steep_gain: steep_gain(sigma_u.max(sigma_c)),
             sigma_shadow: shadowing::sigma(wind.w10),
             // In tilt angles facets show up to (8 sigma_i^2 + 3 sigma_j^2)/3 more area than their slopes' Lambda.
             // A percent is left to quadratures and rounding, so that "at most 1" can be checked.
@@ -284,6 +283,8 @@ impl Parameters {
             bounded: false,
             as_printed,
         };
+        facets.turn(self.wind_direction);
+        facets.set_sigmas([sigma_u, sigma_c], eq_56 / std::f64::consts::TAU);
         let stretch = facets.proposal_stretch();
         facets.proposal_u *= stretch;
         facets.proposal_c *= stretch;

@@ -1,8 +1,8 @@
-//! The number types the closed form is written over: one text for float64, float32 and, later, lanes.
+//! The number types the closed form is written over: one text for float64, float32 and lanes of float32.
 
 use std::ops::{Add, BitAnd, Div, Mul, Neg, Sub};
 
-mod sealed {
+pub(crate) mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
@@ -22,23 +22,20 @@ pub trait Real:
     /// The outcome of a comparison.
     type Mask: Copy + BitAnd<Output = Self::Mask>;
 
-    /// A type with digits to spare for the tilts, whose rounding errors the Gaussian and the
-    /// Gram-Charlier polynomial magnify a thousandfold.
-    type Wide: Real<Wide = Self::Wide, Mask = Self::Mask>;
+    /// A type with digits to spare for the tilts.
+    type Wide: Wide<Self>;
 
     /// The largest finite value.
     const MAX: Self;
     /// The smallest positive normal value.
     const TINY: Self;
+    /// A value whose inverse has a finite fourth power.
+    const SMALL: Self;
 
     /// The number nearest to `x`.
     fn of(x: f64) -> Self;
     /// `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self < other`, as a branch: for decisions that scalars take.
-    fn below(self, other: Self) -> bool;
-    /// For messages.
-    fn to_f64(self) -> f64;
     /// `a` where `mask` holds, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
     /// The smaller one; `other` if `self` is not a number.
@@ -47,89 +44,143 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
+    /// `self * a + b`, rounded once or twice, whichever is faster.
+    fn mul_add(self, a: Self, b: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Natural exponential.
     fn exp(self) -> Self;
-    /// Natural logarithm.
-    fn ln(self) -> Self;
-    /// Sine and cosine of an angle in radians.
-    fn sin_cos(self) -> (Self, Self);
     /// Angle of the point (x, y) = (`other`, `self`), radians.
     fn atan2(self, other: Self) -> Self;
     /// `exp(-x^2)/sqrt(pi) - x erfc(x)` for `x >= 0`: the integral of erfc from x to infinity.
     fn ierfc(self) -> Self;
-    /// In the type that tilts are computed in.
-    fn wide(self) -> Self::Wide;
-    /// Rounded from that type.
-    fn narrow(wide: Self::Wide) -> Self;
 }
 
-macro_rules! forward {
-    () => {
-        fn lt(self, other: Self) -> bool {
-            self < other
+/// A number with digits to spare beyond those of `T`: for the tilts, whose rounding errors the Gaussian and the
+/// Gram-Charlier polynomial magnify a thousandfold.
+pub trait Wide<T>:
+    Copy
+    + std::fmt::Debug
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+{
+    /// The number nearest to `x`.
+    fn of(x: f64) -> Self;
+    /// `x`, with digits to spare.
+    fn widen(x: T) -> Self;
+    /// `a + b`, with digits to spare.
+    fn sum(a: T, b: T) -> Self;
+    /// Rounded.
+    fn narrow(self) -> T;
+    /// `self/other`, or 1e6 where `other` is not positive.
+    fn slope(self, other: Self) -> Self;
+    /// Angle of the point (x, y) = (`other`, `self`), radians.
+    fn atan2(self, other: Self) -> Self;
+    /// Natural exponential of a number that is not positive.
+    fn exp(self) -> T;
+}
+
+/// One number: what lanes are not.
+pub trait Scalar: Real<Wide = f64> {
+    /// `self < other`, as a branch.
+    fn below(self, other: Self) -> bool;
+    /// As float64, exactly.
+    fn to_f64(self) -> f64;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+}
+
+macro_rules! scalar {
+    ($float:ident, $small:expr) => {
+        impl Real for $float {
+            type Mask = bool;
+            type Wide = f64;
+            const MAX: Self = $float::MAX;
+            const TINY: Self = $float::MIN_POSITIVE;
+            const SMALL: Self = $small;
+
+            fn of(x: f64) -> Self {
+                x as Self
+            }
+            fn lt(self, other: Self) -> bool {
+                self < other
+            }
+            fn select(mask: bool, a: Self, b: Self) -> Self {
+                if mask { a } else { b }
+            }
+            fn min(self, other: Self) -> Self {
+                if self < other { self } else { other }
+            }
+            fn max(self, other: Self) -> Self {
+                if self > other { self } else { other }
+            }
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                self * a + b
+            }
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            fn exp(self) -> Self {
+                self.exp()
+            }
+            fn atan2(self, other: Self) -> Self {
+                self.atan2(other)
+            }
+            fn ierfc(self) -> Self {
+                ierfc::$float(self)
+            }
         }
-        fn below(self, other: Self) -> bool {
-            self < other
+
+        impl Wide<$float> for f64 {
+            fn of(x: f64) -> Self {
+                x
+            }
+            fn widen(x: $float) -> Self {
+                x.into()
+            }
+            fn sum(a: $float, b: $float) -> Self {
+                f64::from(a) + f64::from(b)
+            }
+            fn narrow(self) -> $float {
+                self as $float
+            }
+            fn slope(self, other: Self) -> Self {
+                if other > 0.0 { self / Real::max(other, f64::MIN_POSITIVE) } else { 1e6 }
+            }
+            fn atan2(self, other: Self) -> Self {
+                self.atan2(other)
+            }
+            fn exp(self) -> $float {
+                self.exp() as $float
+            }
         }
-        fn to_f64(self) -> f64 {
-            self.into()
-        }
-        fn select(mask: bool, a: Self, b: Self) -> Self {
-            if mask { a } else { b }
-        }
-        fn min(self, other: Self) -> Self {
-            if self < other { self } else { other }
-        }
-        fn max(self, other: Self) -> Self {
-            if self > other { self } else { other }
-        }
-        fn abs(self) -> Self {
-            self.abs()
-        }
-        fn sqrt(self) -> Self {
-            self.sqrt()
-        }
-        fn exp(self) -> Self {
-            self.exp()
-        }
-        fn ln(self) -> Self {
-            self.ln()
-        }
-        fn sin_cos(self) -> (Self, Self) {
-            self.sin_cos()
-        }
-        fn atan2(self, other: Self) -> Self {
-            self.atan2(other)
+
+        impl Scalar for $float {
+            fn below(self, other: Self) -> bool {
+                self < other
+            }
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+            fn ln(self) -> Self {
+                self.ln()
+            }
+            fn sin_cos(self) -> (Self, Self) {
+                self.sin_cos()
+            }
         }
     };
 }
 
-impl Real for f64 {
-    type Mask = bool;
-    type Wide = f64;
-    const MAX: Self = f64::MAX;
-    const TINY: Self = f64::MIN_POSITIVE;
-    forward!();
-
-    fn of(x: f64) -> Self {
-        x
-    }
-    fn ierfc(self) -> Self {
-        // Most directions are this steep: 1e-30 of what it is added to.
-        if self > 8.0 {
-            return 0.0;
-        }
-        (-self * self).exp() * std::f64::consts::FRAC_2_SQRT_PI / 2.0 - self * libm::erfc(self)
-    }
-    fn wide(self) -> f64 {
-        self
-    }
-    fn narrow(wide: f64) -> f64 {
-        wide
-    }
-}
+scalar!(f32, 1e-9);
+scalar!(f64, 1e-70);
 
 /// Coefficients of `ierfc(x) = (b_0 + b_1 x + ... + b_9 x^9)^2` up to [`IERFC_END`], minimax for the error relative to
 /// `x + ierfc(x)/2`, which is what the shadowing function passes on: 1.6e-7, and 4e-7 evaluated in float32. Neither an
@@ -149,33 +200,50 @@ pub const IERFC: [f32; 10] = [
 /// Beyond it ierfc is taken for constant: below 1.4e-6.
 pub const IERFC_END: f32 = 3.2;
 
-impl Real for f32 {
-    type Mask = bool;
-    type Wide = f64;
-    const MAX: Self = f32::MAX;
-    const TINY: Self = f32::MIN_POSITIVE;
-    forward!();
+mod ierfc {
+    pub fn f64(x: f64) -> f64 {
+        // Most directions are this steep: 1e-30 of what it is added to.
+        if x > 8.0 {
+            return 0.0;
+        }
+        (-x * x).exp() * std::f64::consts::FRAC_2_SQRT_PI / 2.0 - x * libm::erfc(x)
+    }
 
-    fn of(x: f64) -> Self {
-        x as f32
+    pub fn f32(x: f32) -> f32 {
+        super::single_ierfc(x)
     }
-    fn ierfc(self) -> Self {
-        let x = Real::min(self, IERFC_END);
-        let root = IERFC.iter().rev().fold(0.0, |sum, &b| sum * x + b);
-        root * root
+}
+
+/// [`Real::ierfc`] in single precision.
+#[inline(always)]
+pub(crate) fn single_ierfc<T: Real>(x: T) -> T {
+    let root = polynomial(&IERFC, T::min(x, T::of(IERFC_END.into())));
+    root * root
+}
+
+/// A polynomial with coefficients of rising order.
+#[inline(always)]
+pub(crate) fn polynomial<const N: usize, T: Real>(coefficients: &[f32; N], x: T) -> T {
+    let mut sum = T::of(coefficients[N - 1].into());
+    let mut k = N - 1;
+    while k > 0 {
+        k -= 1;
+        sum = sum.mul_add(x, T::of(coefficients[k].into()));
     }
-    fn wide(self) -> f64 {
-        self.into()
-    }
-    fn narrow(wide: f64) -> f32 {
-        wide as f32
-    }
+    sum
 }
 
 /// A direction or normal, `[x, y, z]`.
 pub type Vec3<T> = [T; 3];
 
+/// A function of every coordinate. Unlike an array's own `map` it is inlined into lanes whatever the function.
+#[inline(always)]
+pub(crate) fn each<T: Copy, U>(v: [T; 3], f: impl Fn(T) -> U) -> [U; 3] {
+    [f(v[0]), f(v[1]), f(v[2])]
+}
+
 /// Scalar product.
+#[inline(always)]
 pub fn dot<T: Real>(a: Vec3<T>, b: Vec3<T>) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -13,9 +13,9 @@
 //! elementary functions is needed, and against the ideal, area-weighted Gaussian of slopes its weight
 //! is at most 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
-use crate::Real;
-use crate::brdf::{Facets, Lobe, Parts};
-use crate::real::{Vec3, dot};
+use crate::{Real, Scalar};
+use crate::brdf::{Facets, Lobe, Parts, cosine};
+use crate::real::{Vec3, Wide, dot};
 
 /// Keeps the facets' share positive where they hardly reflect.
 const FACET_ALBEDO_FLOOR: f64 = 0.01;
@@ -39,16 +39,28 @@ pub struct Sample<T> {
 }
 
 /// The wave normal with tangents along and across the wind.
-struct Frame<T>([Vec3<T>; 3]);
+enum Frame<T> {
+    /// Of a level surface: cosine and sine of the wind's azimuth.
+    Level([T; 2]),
+    /// Along the wind, across it and along the normal.
+    Wave([Vec3<T>; 3]),
+}
 
 impl<T: Real> Frame<T> {
+    #[inline(always)]
     fn to_local(&self, v: Vec3<T>) -> Vec3<T> {
-        self.0.map(|axis| dot(axis, v))
+        match *self {
+            Self::Level([cos, sin]) => [v[0] * cos + v[1] * sin, v[1] * cos - v[0] * sin, v[2]],
+            Self::Wave([u, c, n]) => [dot(u, v), dot(c, v), dot(n, v)],
+        }
     }
 
+    #[inline(always)]
     fn to_world(&self, v: Vec3<T>) -> Vec3<T> {
-        let [u, c, n] = self.0;
-        [0, 1, 2].map(|k| v[0] * u[k] + v[1] * c[k] + v[2] * n[k])
+        match *self {
+            Self::Level([cos, sin]) => [v[0] * cos - v[1] * sin, v[0] * sin + v[1] * cos, v[2]],
+            Self::Wave([u, c, n]) => [0, 1, 2].map(|k| v[0] * u[k] + v[1] * c[k] + v[2] * n[k]),
+        }
     }
 }
 
@@ -66,14 +78,15 @@ struct Proposal<T> {
 
 impl<T: Real> Facets<T> {
     #[inline(always)]
-    fn frame(&self, n: Vec3<T>) -> Frame<T> {
-        let (cw, sw) = (T::narrow(self.cos_wind), T::narrow(self.sin_wind));
+    fn frame(&self, n: Option<Vec3<T>>) -> Frame<T> {
+        let (cw, sw) = (self.cos_wind.narrow(), self.sin_wind.narrow());
+        let Some(n) = n else { return Frame::Level([cw, sw]) };
         let along = cw * n[0] + sw * n[1];
         let u = [cw - along * n[0], sw - along * n[1], -along * n[2]];
         let length = dot(u, u).sqrt();
-        let u = u.map(|x| x / length);
+        let u = [u[0] / length, u[1] / length, u[2] / length];
         let c = [n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]];
-        Frame([u, c, n])
+        Frame::Wave([u, c, n])
     }
 
     /// For a source in the frame of the normal, as everything below.
@@ -88,6 +101,47 @@ impl<T: Real> Facets<T> {
         Proposal { towards, d, v, tail }
     }
 
+    /// The tilt of a unit half vector, and the Jacobian `d omega_h/d tilt^2`.
+    #[inline(always)]
+    fn tilt(&self, h: Vec3<T>) -> ([T; 2], T) {
+        let z = T::max(h[2], T::of(LEVEL));
+        if self.slope_measure {
+            return ([h[0] / z, h[1] / z], z * z * z);
+        }
+        let sin = T::max((h[0] * h[0] + h[1] * h[1]).sqrt(), T::of(LEVEL));
+        let angle = sin.atan2(z);
+        ([h[0] * angle / sin, h[1] * angle / sin], sin / angle)
+    }
+
+    /// Density, 1/sr, of the observer's direction that makes `h` with the source's, both added up and
+    /// not of unit length.
+    #[inline(always)]
+    fn pdf(&self, i: Vec3<T>, h: Vec3<T>) -> T {
+        let (zero, one, two, half) = (T::of(0.0), T::of(1.0), T::of(2.0), T::of(0.5));
+        let length = T::max(dot(h, h).sqrt(), T::TINY);
+        let h = [h[0] / length, h[1] / length, h[2] / length];
+        let p = self.proposal(i);
+        let (tilt, jacobian) = self.tilt(h);
+        let z = [tilt[0] / self.proposal_u, tilt[1] / self.proposal_c];
+        let z2 = z[0] * z[0] + z[1] * z[1];
+        let beyond = z[0] * p.towards[0] + z[1] * p.towards[1] - one;
+        // The area shown over its value for a level facet; i.H, not |i + o|/2, agrees with the tilts
+        // to the last digit at grazing angles.
+        let cos = dot(i, h);
+        let shown = cos / T::max(h[2] * T::max(i[2], T::of(GRAZING)), T::TINY);
+        let gauss = T::exp(-half * z2) * T::min(shown, two);
+        let tail = T::select(
+            T::lt(zero, beyond),
+            beyond * T::exp(T::min(p.v * p.v * beyond - half * z2, zero)),
+            zero,
+        );
+        let norm = T::of(4.0 * std::f64::consts::TAU) * self.proposal_u * self.proposal_c * (one + p.tail);
+        let pdf = (gauss + tail) / (norm * T::max(cos * jacobian, T::TINY));
+        T::select(T::lt(zero, cos), T::min(pdf, T::MAX), zero)
+    }
+}
+
+impl<T: Scalar> Facets<T> {
     /// The half vector of a tilt; zero where a tilt angle passes the horizontal.
     #[inline(always)]
     fn half_vector(&self, [u, c]: [T; 2]) -> Vec3<T> {
@@ -101,18 +155,6 @@ impl<T: Real> Facets<T> {
         let (sin, cos) = tilt.sin_cos();
         let valid = T::lt(tilt, T::of(std::f64::consts::FRAC_PI_2));
         [u * sin / tilt, c * sin / tilt, cos].map(|x| T::select(valid, x, zero))
-    }
-
-    /// The tilt of a unit half vector, and the Jacobian `d omega_h/d tilt^2`.
-    #[inline(always)]
-    fn tilt(&self, h: Vec3<T>) -> ([T; 2], T) {
-        let z = T::max(h[2], T::of(LEVEL));
-        if self.slope_measure {
-            return ([h[0] / z, h[1] / z], z * z * z);
-        }
-        let sin = T::max((h[0] * h[0] + h[1] * h[1]).sqrt(), T::of(LEVEL));
-        let angle = sin.atan2(z);
-        ([h[0] * angle / sin, h[1] * angle / sin], sin / angle)
     }
 
     /// A half vector, or zero where the draw is lost.
@@ -139,33 +181,6 @@ impl<T: Real> Facets<T> {
         let turn = T::lt(T::select(in_tail, one, rest * (a + b)), T::select(in_tail, zero, b));
         [T::select(turn, -h[0], h[0]), T::select(turn, -h[1], h[1]), h[2]]
     }
-
-    /// Density, 1/sr, of the observer's direction that makes `h` with the source's, both added up and
-    /// not of unit length.
-    #[inline(always)]
-    fn pdf(&self, i: Vec3<T>, h: Vec3<T>) -> T {
-        let (zero, one, two, half) = (T::of(0.0), T::of(1.0), T::of(2.0), T::of(0.5));
-        let length = T::max(dot(h, h).sqrt(), T::TINY);
-        let h = h.map(|x| x / length);
-        let p = self.proposal(i);
-        let (tilt, jacobian) = self.tilt(h);
-        let z = [tilt[0] / self.proposal_u, tilt[1] / self.proposal_c];
-        let z2 = z[0] * z[0] + z[1] * z[1];
-        let beyond = z[0] * p.towards[0] + z[1] * p.towards[1] - one;
-        // The area shown over its value for a level facet; i.H, not |i + o|/2, agrees with the tilts
-        // to the last digit at grazing angles.
-        let cos = dot(i, h);
-        let shown = cos / T::max(h[2] * T::max(i[2], T::of(GRAZING)), T::TINY);
-        let gauss = T::exp(-half * z2) * T::min(shown, two);
-        let tail = T::select(
-            T::lt(zero, beyond),
-            beyond * T::exp(T::min(p.v * p.v * beyond - half * z2, zero)),
-            zero,
-        );
-        let norm = T::of(4.0 * std::f64::consts::TAU) * self.proposal_u * self.proposal_c * (one + p.tail);
-        let pdf = (gauss + tail) / (norm * T::max(cos * jacobian, T::TINY));
-        T::select(T::lt(zero, cos), T::min(pdf, T::MAX), zero)
-    }
 }
 
 impl Facets<f64> {
@@ -187,7 +202,7 @@ impl Facets<f64> {
                 let [x, y] = [axis(h[0] / h[2], self.sigma_u), axis(h[1] / h[2], self.sigma_c)];
                 let (tilt, jacobian) = self.tilt(h);
                 let slope_over_tilt = (h[0].hypot(h[1]) / h[2] + 1e-9) / (tilt[0].hypot(tilt[1]) + 1e-9);
-                let density = self.tilt_density(-x, y, h[2]) * h[2] * jacobian * slope_over_tilt;
+                let density = self.tilt_density(-x, y, (h[2] * h[2]).recip()) * h[2] * jacobian * slope_over_tilt;
                 wanted.push((density.ln(), 0.5 * (u * u + c * c)));
             }
         }
@@ -208,29 +223,31 @@ impl<T: Real> Lobe<T> {
             Parts { whitecaps: false, .. } => [one, zero],
             Parts { facets: false, .. } => [zero, one],
             _ => {
-                let albedo =
-                    T::narrow(self.facets.reflectance.schlick(cos.wide())) + T::of(FACET_ALBEDO_FLOOR);
+                let albedo = self.facets.reflectance.schlick(cos) + T::of(FACET_ALBEDO_FLOOR);
                 let facets = (one - self.whitecap_fraction) * albedo;
                 let whitecaps = T::of(std::f64::consts::PI) * self.whitecap_brdf * self.whitecap_fraction;
-                [facets, whitecaps].map(|x| x / T::max(facets + whitecaps, T::TINY))
+                {
+                    let both = T::max(facets + whitecaps, T::TINY);
+                    [facets / both, whitecaps / both]
+                }
             }
         }
     }
 
     /// Density of the observer's direction `o` among draws for the source `i`, 1/sr.
     #[inline(always)]
-    pub fn pdf(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+    pub fn pdf(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
         self.pdf_parts(i, o, n, Parts::ALL)
     }
 
     /// The same where only some parts are drawn from.
     #[inline(always)]
-    pub fn pdf_parts(&self, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>, parts: Parts) -> T {
-        let zero = T::of(0.0);
+    pub fn pdf_parts(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
+        let (zero, n) = (T::of(0.0), n.into());
         if !parts.facets && !parts.whitecaps {
             return zero;
         }
-        let (ci, cr) = (dot(i, n), dot(o, n));
+        let (ci, cr) = (cosine(i, n), cosine(o, n));
         let [facets, whitecaps] = self.shares(ci, parts);
         let mut pdf = whitecaps * cr * T::of(std::f64::consts::FRAC_1_PI);
         if parts.facets {
@@ -241,16 +258,25 @@ impl<T: Real> Lobe<T> {
         T::select(T::lt(zero, ci) & T::lt(zero, cr), pdf, zero)
     }
 
+}
+
+impl<T: Scalar> Lobe<T> {
     /// Draws an observer's direction for the source `i`, with three uniform numbers of [0, 1).
     #[inline(always)]
-    pub fn sample(&self, i: Vec3<T>, n: Vec3<T>, u: [T; 3]) -> Sample<T> {
+    pub fn sample(&self, i: Vec3<T>, n: impl Into<Option<Vec3<T>>>, u: [T; 3]) -> Sample<T> {
         self.sample_parts(i, n, u, Parts::ALL)
     }
 
     /// The same from some parts only.
-    pub fn sample_parts(&self, i: Vec3<T>, n: Vec3<T>, u: [T; 3], parts: Parts) -> Sample<T> {
-        let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
-        let [share, _] = self.shares(dot(i, n), parts);
+    pub fn sample_parts(
+        &self,
+        i: Vec3<T>,
+        n: impl Into<Option<Vec3<T>>>,
+        u: [T; 3],
+        parts: Parts,
+    ) -> Sample<T> {
+        let (zero, one, two, n) = (T::of(0.0), T::of(1.0), T::of(2.0), n.into());
+        let [share, _] = self.shares(cosine(i, n), parts);
         let whitecap = !u[0].below(share);
         let direction = if whitecap {
             cosine_direction(n, [u[1], u[2]])
@@ -271,16 +297,17 @@ impl<T: Real> Lobe<T> {
 
 /// A direction about `n`, in proportion to its cosine.
 #[inline(always)]
-fn cosine_direction<T: Real>(n: Vec3<T>, u: [T; 2]) -> Vec3<T> {
+fn cosine_direction<T: Scalar>(n: Option<Vec3<T>>, u: [T; 2]) -> Vec3<T> {
     let (zero, one) = (T::of(0.0), T::of(1.0));
     let (sin, cos) = (T::of(std::f64::consts::TAU) * u[1]).sin_cos();
     let r = u[0].sqrt();
     let z = T::max(one - u[0], zero).sqrt();
-    // Orthonormal tangents of a normal that points up; the identity for a flat sea.
+    let (x, y) = (r * cos, r * sin);
+    let Some(n) = n else { return [x, y, z] };
+    // Orthonormal tangents of a normal that points up.
     let a = -one / (one + n[2]);
     let b = n[0] * n[1] * a;
     let s = [one + n[0] * n[0] * a, b, -n[0]];
     let t = [b, one + n[1] * n[1] * a, -n[1]];
-    let (x, y) = (r * cos, r * sin);
     [x * s[0] + y * t[0] + z * n[0], x * s[1] + y * t[1] + z * n[1], x * s[2] + y * t[2] + z * n[2]]
 }

@@ -45,7 +45,7 @@ const C04: f64 = 0.23;
 /// it stands in the report, without the factor U that Cox and Munk have.
 #[inline(always)]
 pub fn gram_charlier<T: Real>(c21: T, c03: T, u: T, c: T, printed: bool) -> T {
-    let [one, three, six] = [1.0, 3.0, 6.0].map(T::of);
+    let (one, three, six) = (T::of(1.0), T::of(3.0), T::of(6.0));
     let (u2, c2) = (u * u, c * c);
     let skew_c = (c2 - one) * if printed { one } else { u };
     one - T::of(0.5) * c21 * skew_c - T::of(1.0 / 6.0) * c03 * u * (u2 - three)

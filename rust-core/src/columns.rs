@@ -1,0 +1,148 @@
+//! Many rows in float32 at once, coordinate by coordinate: as fast as this processor can.
+
+use crate::lanes::{Kernel, Lanes, Level, Vector};
+use crate::real::Vec3;
+use crate::{Error, Lobe, batch};
+use rayon::prelude::*;
+
+/// The coordinates of many vectors, one slice for each.
+pub type Coordinates<'a> = [&'a [f32]; 3];
+
+/// Rows of directions, coordinate by coordinate: to the source, to the observer, and the wave normals (up where there are
+/// none).
+#[derive(Debug, Clone, Copy)]
+pub struct Columns<'a> {
+    to_source: Coordinates<'a>,
+    to_observer: Coordinates<'a>,
+    normals: Option<Coordinates<'a>>,
+}
+
+/// Rows that one task takes.
+const TASK: usize = 1 << 14;
+
+impl<'a> Columns<'a> {
+    /// Checks lengths of the slices and of every vector; a normal must point up.
+    pub fn new(
+        to_source: Coordinates<'a>,
+        to_observer: Coordinates<'a>,
+        normals: Option<Coordinates<'a>>,
+    ) -> Result<Self, Error> {
+        let rows = to_source[0].len();
+        let check = |column, vectors: Coordinates, normals| {
+            vectors.iter().try_for_each(|x| batch::same_length(column, x.len(), rows))?;
+            check(column, vectors, normals)
+        };
+        check("to_source", to_source, false)?;
+        check("to_observer", to_observer, false)?;
+        normals.map_or(Ok(()), |normals| check("normals", normals, true))?;
+        Ok(Self { to_source, to_observer, normals })
+    }
+
+    /// Writes f, 1/sr, of every row, on all threads of the current pool.
+    pub fn eval(&self, lobe: &Lobe<f32>, f: &mut [f32]) -> Result<(), Error> {
+        self.eval_on(Level::detect(), lobe, f)
+    }
+
+    /// The same in the vectors of a certain kind: for comparisons. The portable ones stand in for what the processor lacks.
+    pub fn eval_on(&self, level: Level, lobe: &Lobe<f32>, f: &mut [f32]) -> Result<(), Error> {
+        self.each(level, lobe, f, Value::Brdf)
+    }
+
+    /// Writes the density, 1/sr, with which [`Lobe::sample`] draws every row's observer.
+    pub fn pdf(&self, lobe: &Lobe<f32>, pdf: &mut [f32]) -> Result<(), Error> {
+        self.each(Level::detect(), lobe, pdf, Value::Density)
+    }
+
+    fn each(&self, level: Level, lobe: &Lobe<f32>, out: &mut [f32], value: Value) -> Result<(), Error> {
+        batch::same_length("the output", out.len(), self.to_source[0].len())?;
+        out.par_chunks_mut(TASK).enumerate().for_each(|(task, out)| {
+            level.run(Task { columns: self.rows(task * TASK, out.len()), lobe, out, value });
+        });
+        Ok(())
+    }
+
+    fn rows(&self, first: usize, count: usize) -> Self {
+        let of = |columns: Coordinates<'a>| columns.map(|x| &x[first..first + count]);
+        Self {
+            to_source: of(self.to_source),
+            to_observer: of(self.to_observer),
+            normals: self.normals.map(of),
+        }
+    }
+}
+
+/// What is wanted of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Value {
+    Brdf,
+    Density,
+}
+
+/// Some rows of one sea.
+struct Task<'a> {
+    columns: Columns<'a>,
+    lobe: &'a Lobe<f32>,
+    out: &'a mut [f32],
+    value: Value,
+}
+
+impl Kernel for Task<'_> {
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let lobe: Lobe<Lanes<V>> = self.lobe.cast();
+        let rows = self.out.len();
+        let mut first = 0;
+        while first + V::WIDTH <= rows {
+            self.columns.vector::<V>(first, &lobe, self.value).store(&mut self.out[first..]);
+            first += V::WIDTH;
+        }
+        if first < rows {
+            // What is left, filled up with its last row.
+            let last = |x: &[f32]| -> [f32; 16] { std::array::from_fn(|l| x[(first + l).min(rows - 1)]) };
+            let of = |columns: Coordinates| columns.map(last);
+            let (i, o) = (of(self.columns.to_source), of(self.columns.to_observer));
+            let n = self.columns.normals.map(of);
+            let columns = Columns {
+                to_source: i.each_ref().map(|x| &x[..]),
+                to_observer: o.each_ref().map(|x| &x[..]),
+                normals: n.as_ref().map(|n| n.each_ref().map(|x| &x[..])),
+            };
+            let mut values = [0.0; 16];
+            columns.vector::<V>(0, &lobe, self.value).store(&mut values);
+            self.out[first..].copy_from_slice(&values[..rows - first]);
+        }
+    }
+}
+
+impl Columns<'_> {
+    /// The values of as many rows as a vector has lanes.
+    #[inline(always)]
+    fn vector<V: Vector>(&self, first: usize, lobe: &Lobe<Lanes<V>>, value: Value) -> V {
+        let (i, o) = (load(self.to_source, first), load(self.to_observer, first));
+        let n = match self.normals {
+            Some(n) => Some(load(n, first)),
+            None => None,
+        };
+        match value {
+            Value::Brdf => lobe.eval(i, o, n).0,
+            Value::Density => lobe.pdf(i, o, n).0,
+        }
+    }
+}
+
+#[inline(always)]
+fn load<V: Vector>(x: Coordinates, first: usize) -> Vec3<Lanes<V>> {
+    [Lanes(V::load(&x[0][first..])), Lanes(V::load(&x[1][first..])), Lanes(V::load(&x[2][first..]))]
+}
+
+/// Refuses the first vector that is not finite, not of length 1 or, for `normals`, does not point up.
+fn check(column: &'static str, [x, y, z]: Coordinates, normals: bool) -> Result<(), Error> {
+    let rows = || x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]);
+    // All at once and without branches, a little stricter; if one fails, row by row.
+    let strict = 1.9 * batch::UNIT_TOLERANCE as f32;
+    let good = rows().fold(true, |good, [x, y, z]| {
+        let excess = x * x + y * y + z * z - 1.0;
+        good & (excess.abs() < strict) & (!normals | (z > 0.0))
+    });
+    if good { Ok(()) } else { batch::check_rows(column, rows(), normals) }
+}
