@@ -3,9 +3,8 @@
 //! `cargo run --release -p prob-water --example throughput [-- REPEATS]`: every figure is measured
 //! `REPEATS` times (5 unless told), interleaved with the others, and given as the best and the median.
 
-use prob_water::brdf::up;
 use prob_water::real::Vec3;
-use prob_water::{Lobe, Parameters, Real, SlopeMeasure};
+use prob_water::{Lobe, Parameters, Scalar, SlopeMeasure};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;
 use std::time::Instant;
@@ -53,7 +52,7 @@ fn main() {
 }
 
 /// Adds eval, pdf and sample of a lobe in one precision.
-fn add<T: Real + 'static>(to: &mut Vec<Candidate>, sea: &str, precision: &'static str, lobe: Lobe<T>) {
+fn add<T: Scalar + 'static>(to: &mut Vec<Candidate>, sea: &str, precision: &'static str, lobe: Lobe<T>) {
     let mut rng = StdRng::seed_from_u64(1);
     let rows: Vec<Row<T>> = (0..PAIRS)
         .map(|_| (direction(&mut rng), direction(&mut rng), [0; 3].map(|_| T::of(rng.random()))))
@@ -67,9 +66,9 @@ fn add<T: Real + 'static>(to: &mut Vec<Candidate>, sea: &str, precision: &'stati
             Box::new(move || rate(PASSES, &pass) * PAIRS as f64),
         ));
     };
-    one("eval", |lobe, (i, o, _)| _ = black_box(lobe.eval(*i, *o, up())));
-    one("pdf", |lobe, (i, o, _)| _ = black_box(lobe.pdf(*i, *o, up())));
-    one("sample", |lobe, (i, _, u)| _ = black_box(lobe.sample(*i, up(), *u)));
+    one("eval", |lobe, (i, o, _)| _ = black_box(lobe.eval(*i, *o, None)));
+    one("pdf", |lobe, (i, o, _)| _ = black_box(lobe.pdf(*i, *o, None)));
+    one("sample", |lobe, (i, _, u)| _ = black_box(lobe.sample(*i, None, *u)));
 }
 
 /// Runs per second over `count` of them.
@@ -80,7 +79,7 @@ fn rate(count: usize, run: impl Fn()) -> f64 {
 }
 
 /// Random, uniform over the hemisphere down to an elevation of a degree.
-fn direction<T: Real>(rng: &mut StdRng) -> Vec3<T> {
+fn direction<T: Scalar>(rng: &mut StdRng) -> Vec3<T> {
     let (z, phi) = (rng.random_range(0.02..1.0f64), rng.random_range(0.0..std::f64::consts::TAU));
     let s = (1.0 - z * z).sqrt();
     [s * phi.cos(), s * phi.sin(), z].map(T::of)

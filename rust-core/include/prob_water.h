@@ -122,6 +122,19 @@ enum ProbWaterStatus prob_water_eval_f32(const struct ProbWater *sea,
                                          const float *normals,
                                          float *f);
 
+// `prob_water_eval_f32` of directions that lie coordinate by coordinate: three arrays of `rows` numbers each, x, y and z.
+// The fastest form: nothing has to be rearranged for the processor's vectors.
+//
+// # Safety
+// `sea` comes from `prob_water_configure`; the vectors are three pointers to `rows` numbers, `f` holds `rows` numbers.
+// Outputs overlap neither inputs nor each other.
+enum ProbWaterStatus prob_water_eval_columns(const struct ProbWater *sea,
+                                             size_t rows,
+                                             const float *const *to_source,
+                                             const float *const *to_observer,
+                                             const float *const *normals,
+                                             float *f);
+
 // The mean of f, 1/sr, of every row by the empirical model, its standard uncertainty, and whether the directions lie
 // outside of the table's grid (1), whose nearest values these are, or not (0).
 //

@@ -1,8 +1,10 @@
 //! Checked evaluation of many rows: every direction is looked at before the first is evaluated.
 
-use crate::real::Vec3;
 pub use crate::columns::{Columns, Coordinates};
+use crate::lanes::Level;
+use crate::real::Vec3;
 use crate::{Error, Lobe, Scalar};
+use rayon::prelude::*;
 
 /// How far a unit vector's length may be from 1.
 pub const UNIT_TOLERANCE: f64 = 1e-4;
@@ -32,30 +34,101 @@ impl<'a, T: Scalar> Rows<'a, T> {
         Ok(Self { to_source, to_observer, normals })
     }
 
-    /// Writes f, 1/sr, of every row.
-    pub fn eval(&self, lobe: &Lobe<T>, f: &mut [T]) -> Result<(), Error> {
-        self.each(f, |_, i, o, n| lobe.eval(i, o, n))
-    }
-
-    /// Writes a value of every row: of its number from 0, its directions to source and observer and its normal, if
-    /// it has one.
+    /// Writes a value of every row, on all threads of the current pool: of its number from 0, its directions to source and
+    /// observer and its normal, if it has one.
     pub fn each(
         &self,
         out: &mut [T],
-        value: impl Fn(usize, Vec3<T>, Vec3<T>, Option<Vec3<T>>) -> T,
+        value: impl Fn(usize, Vec3<T>, Vec3<T>, Option<Vec3<T>>) -> T + Sync,
     ) -> Result<(), Error> {
-        same_length("the output", out.len(), self.to_source.len())?;
-        for (row, out) in out.iter_mut().enumerate() {
-            let n = self.normals.map(|n| n[row]);
-            *out = value(row, self.to_source[row], self.to_observer[row], n);
-        }
-        Ok(())
+        self.tasks(out, |rows, first, out| {
+            for (k, out) in out.iter_mut().enumerate() {
+                let n = rows.normals.map(|n| n[k]);
+                *out = value(first + k, rows.to_source[k], rows.to_observer[k], n);
+            }
+        })
+    }
+
+    /// Shares the rows out: a task gets some of them, the number of the first, and their part of the output.
+    fn tasks(&self, out: &mut [T], task: impl Fn(Self, usize, &mut [T]) + Sync) -> Result<(), Error> {
+        in_tasks(out, self.to_source.len(), |first, out| {
+            let rows = first..first + out.len();
+            let part = Self {
+                to_source: &self.to_source[rows.clone()],
+                to_observer: &self.to_observer[rows.clone()],
+                normals: self.normals.map(|n| &n[rows]),
+            };
+            task(part, first, out);
+        })
+    }
+}
+
+impl<T: Batched> Rows<'_, T> {
+    /// Writes f, 1/sr, of every row, on all threads of the current pool; float32 in the processor's vectors.
+    pub fn eval(&self, lobe: &Lobe<T>, f: &mut [T]) -> Result<(), Error> {
+        T::values(self, lobe, Quantity::Brdf, f)
     }
 
     /// Writes the density, 1/sr, with which [`Lobe::sample`] draws every row's observer.
     pub fn pdf(&self, lobe: &Lobe<T>, pdf: &mut [T]) -> Result<(), Error> {
-        self.each(pdf, |_, i, o, n| lobe.pdf(i, o, n))
+        T::values(self, lobe, Quantity::Density, pdf)
     }
+}
+
+/// What is wanted of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// f, 1/sr.
+    Brdf,
+    /// The density with which [`Lobe::sample`] draws, 1/sr.
+    Density,
+}
+
+/// How rows of a number type are evaluated: one by one, or in lanes.
+pub trait Batched: Scalar {
+    /// Writes a value of every row.
+    fn values(rows: &Rows<Self>, lobe: &Lobe<Self>, value: Quantity, out: &mut [Self]) -> Result<(), Error>;
+}
+
+impl Batched for f64 {
+    fn values(rows: &Rows<Self>, lobe: &Lobe<Self>, value: Quantity, out: &mut [Self]) -> Result<(), Error> {
+        match value {
+            Quantity::Brdf => rows.each(out, |_, i, o, n| lobe.eval(i, o, n)),
+            Quantity::Density => rows.each(out, |_, i, o, n| lobe.pdf(i, o, n)),
+        }
+    }
+}
+
+impl Batched for f32 {
+    fn values(rows: &Rows<Self>, lobe: &Lobe<Self>, value: Quantity, out: &mut [Self]) -> Result<(), Error> {
+        rows.tasks(out, |rows, _, out| {
+            let transposed = |v: &[Vec3<f32>]| [0, 1, 2].map(|k| v.iter().map(|v| v[k]).collect::<Vec<_>>());
+            let (i, o) = (transposed(rows.to_source), transposed(rows.to_observer));
+            let n = rows.normals.map(transposed);
+            let [i, o] = [&i, &o].map(|v| v.each_ref().map(Vec::as_slice));
+            let n = n.as_ref().map(|v| v.each_ref().map(Vec::as_slice));
+            Columns::unchecked(i, o, n).values(Level::detect(), lobe, value, out);
+        })
+    }
+}
+
+/// Rows that a task takes: few enough to stay in the cache.
+const TASK: usize = 1 << 13;
+
+/// Shares an output of as many numbers as there are rows out to the threads of the current pool: a task gets the number of
+/// its first row, and its part.
+pub(crate) fn in_tasks<T: Send>(
+    out: &mut [T],
+    rows: usize,
+    task: impl Fn(usize, &mut [T]) + Sync,
+) -> Result<(), Error> {
+    same_length("the output", out.len(), rows)?;
+    if rows <= TASK {
+        task(0, out);
+    } else {
+        out.par_chunks_mut(TASK).enumerate().for_each(|(number, out)| task(number * TASK, out));
+    }
+    Ok(())
 }
 
 pub(crate) fn same_length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {

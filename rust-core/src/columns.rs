@@ -1,9 +1,9 @@
 //! Many rows in float32 at once, coordinate by coordinate: as fast as this processor can.
 
+use crate::batch::{self, Quantity};
 use crate::lanes::{Kernel, Lanes, Level, Vector};
 use crate::real::Vec3;
-use crate::{Error, Lobe, batch};
-use rayon::prelude::*;
+use crate::{Error, Lobe};
 
 /// The coordinates of many vectors, one slice for each.
 pub type Coordinates<'a> = [&'a [f32]; 3];
@@ -16,9 +16,6 @@ pub struct Columns<'a> {
     to_observer: Coordinates<'a>,
     normals: Option<Coordinates<'a>>,
 }
-
-/// Rows that one task takes.
-const TASK: usize = 1 << 14;
 
 impl<'a> Columns<'a> {
     /// Checks lengths of the slices and of every vector; a normal must point up.
@@ -35,7 +32,16 @@ impl<'a> Columns<'a> {
         check("to_source", to_source, false)?;
         check("to_observer", to_observer, false)?;
         normals.map_or(Ok(()), |normals| check("normals", normals, true))?;
-        Ok(Self { to_source, to_observer, normals })
+        Ok(Self::unchecked(to_source, to_observer, normals))
+    }
+
+    /// Of vectors that have been checked.
+    pub(crate) fn unchecked(
+        to_source: Coordinates<'a>,
+        to_observer: Coordinates<'a>,
+        normals: Option<Coordinates<'a>>,
+    ) -> Self {
+        Self { to_source, to_observer, normals }
     }
 
     /// Writes f, 1/sr, of every row, on all threads of the current pool.
@@ -45,20 +51,23 @@ impl<'a> Columns<'a> {
 
     /// The same in the vectors of a certain kind: for comparisons. The portable ones stand in for what the processor lacks.
     pub fn eval_on(&self, level: Level, lobe: &Lobe<f32>, f: &mut [f32]) -> Result<(), Error> {
-        self.each(level, lobe, f, Value::Brdf)
+        self.in_tasks(level, lobe, Quantity::Brdf, f)
     }
 
     /// Writes the density, 1/sr, with which [`Lobe::sample`] draws every row's observer.
     pub fn pdf(&self, lobe: &Lobe<f32>, pdf: &mut [f32]) -> Result<(), Error> {
-        self.each(Level::detect(), lobe, pdf, Value::Density)
+        self.in_tasks(Level::detect(), lobe, Quantity::Density, pdf)
     }
 
-    fn each(&self, level: Level, lobe: &Lobe<f32>, out: &mut [f32], value: Value) -> Result<(), Error> {
-        batch::same_length("the output", out.len(), self.to_source[0].len())?;
-        out.par_chunks_mut(TASK).enumerate().for_each(|(task, out)| {
-            level.run(Task { columns: self.rows(task * TASK, out.len()), lobe, out, value });
-        });
-        Ok(())
+    fn in_tasks(&self, level: Level, lobe: &Lobe<f32>, value: Quantity, out: &mut [f32]) -> Result<(), Error> {
+        batch::in_tasks(out, self.to_source[0].len(), |first, out| {
+            self.rows(first, out.len()).values(level, lobe, value, out);
+        })
+    }
+
+    /// Writes a value of every row, on this thread.
+    pub(crate) fn values(&self, level: Level, lobe: &Lobe<f32>, value: Quantity, out: &mut [f32]) {
+        level.run(Task { columns: *self, lobe, out, value });
     }
 
     fn rows(&self, first: usize, count: usize) -> Self {
@@ -71,19 +80,12 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// What is wanted of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Value {
-    Brdf,
-    Density,
-}
-
 /// Some rows of one sea.
 struct Task<'a> {
     columns: Columns<'a>,
     lobe: &'a Lobe<f32>,
     out: &'a mut [f32],
-    value: Value,
+    value: Quantity,
 }
 
 impl Kernel for Task<'_> {
@@ -117,15 +119,15 @@ impl Kernel for Task<'_> {
 impl Columns<'_> {
     /// The values of as many rows as a vector has lanes.
     #[inline(always)]
-    fn vector<V: Vector>(&self, first: usize, lobe: &Lobe<Lanes<V>>, value: Value) -> V {
+    fn vector<V: Vector>(&self, first: usize, lobe: &Lobe<Lanes<V>>, value: Quantity) -> V {
         let (i, o) = (load(self.to_source, first), load(self.to_observer, first));
         let n = match self.normals {
             Some(n) => Some(load(n, first)),
             None => None,
         };
         match value {
-            Value::Brdf => lobe.eval(i, o, n).0,
-            Value::Density => lobe.pdf(i, o, n).0,
+            Quantity::Brdf => lobe.eval(i, o, n).0,
+            Quantity::Density => lobe.pdf(i, o, n).0,
         }
     }
 }

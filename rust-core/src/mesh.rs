@@ -4,9 +4,10 @@
 
 use crate::characteristic::variances;
 use crate::grid::{CELLS, Grid, Layout, Ring, needed, split};
+use crate::surface::Point;
 use crate::waves::{Component, Draws};
 use crate::wind::bisect;
-use crate::{Ensemble, Error, Parameters, RealisedSurface, Water, slopes, whitecap};
+use crate::{Ensemble, Error, Parameters, RealisedSurface, Water, WaveSums, slopes, whitecap};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -160,12 +161,20 @@ impl Mesh {
         let (breaking, rest) = self.components.split_at(self.foam.map_or(0, |foam| foam.waves));
         let (breaking, rest) = (seen(breaking), seen(rest));
         let resolved: f64 = breaking.iter().map(Component::acceleration_variance).sum();
-        let [breaking, rest] = [breaking, rest].map(|waves| RealisedSurface::new(waves.into_iter(), time));
+        let places: Vec<_> = self.grid.places(ring).collect();
+        let precise: Vec<_> = places.iter().map(|place| place.map(f64::from)).collect();
+        let points = |waves: Vec<Component>| {
+            let mut points = vec![Point::default(); places.len()];
+            let surface = RealisedSurface::new(waves.into_iter(), time);
+            WaveSums::new(&surface).points(&precise, &mut points);
+            points
+        };
+        let sums = points(breaking).into_iter().zip(points(rest));
 
         let corners = positions.chunks_exact_mut(3).zip(normals.chunks_exact_mut(3));
-        for (i, ([x, y], (position, normal))) in self.grid.places(ring).zip(corners).enumerate() {
-            let place = [x, y].map(f64::from);
-            let (mut point, other) = (breaking.point(place), rest.point(place));
+        for (i, (([x, y], (mut point, other)), (position, normal))) in
+            places.into_iter().zip(sums).zip(corners).enumerate()
+        {
             point.height += other.height;
             point.slope = std::array::from_fn(|axis| point.slope[axis] + other.slope[axis]);
             position.copy_from_slice(&[x, y, point.height as f32]);

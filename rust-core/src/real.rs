@@ -83,7 +83,7 @@ pub trait Wide<T>:
 }
 
 /// One number: what lanes are not.
-pub trait Scalar: Real<Wide = f64> {
+pub trait Scalar: Real<Wide = f64> + Send + Sync {
     /// `self < other`, as a branch.
     fn below(self, other: Self) -> bool;
     /// As float64, exactly.

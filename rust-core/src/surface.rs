@@ -28,7 +28,7 @@ pub struct Surface {
 }
 
 /// The surface over a place.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Point {
     /// eta, m (Eq. 38).
     pub height: f64,
@@ -116,6 +116,14 @@ impl Surface {
         );
     }
 
+    /// Every wave's amplitude, m, phase over the origin, radians, wave numbers along x and y, rad/m, and frequency, rad/s.
+    pub(crate) fn waves(&self) -> impl Iterator<Item = [f64; 5]> {
+        (0..self.amplitude.len() * LANES).map(|wave| {
+            let (at, l) = (wave / LANES, wave % LANES);
+            [&self.amplitude, &self.phase, &self.k_x, &self.k_y, &self.frequency].map(|array| array[at][l])
+        })
+    }
+
     /// No crest is higher and no trough deeper, m (Eq. 42).
     pub fn highest(&self) -> f64 {
         self.highest
@@ -159,7 +167,7 @@ impl Surface {
     /// The waves with these amplitudes, m, by lanes.
     #[inline(always)]
     fn total(&self, place: [f64; 2], amplitudes: impl Fn(usize) -> [f64; LANES]) -> Point {
-        let mut point = Point { height: 0.0, slope: [0.0; 2], acceleration: 0.0 };
+        let mut point = Point::default();
         for lanes in 0..self.amplitude.len() {
             let a = amplitudes(lanes);
             let (sin, cos) = sin_cos(self.phases(place, lanes));

@@ -100,6 +100,19 @@ int main(void) {
     check(memcmp(f, g, sizeof f) == 0, "a flat sea's normals are up");
     check(prob_water_eval_f32(sea, 1, source32, source32, NULL, &f32) == PROB_WATER_STATUS_OK, "float32");
     check(fabs(f32 / f[0] - 1) < 1e-5, "float32 agrees");
+    {
+        const float x[3] = {0, -0.70710678f, 0}, xo[3] = {0, 0.70710678f, 0}, y[3] = {0, 0, 0}, z[3] = {1, 0.70710678f, 1},
+                    zo[3] = {1, 0.70710678f, -1};
+        const float *source[3] = {x, y, z}, *observer[3] = {xo, y, zo};
+        float many[3];
+        check(prob_water_eval_columns(sea, 3, source, observer, NULL, many) == PROB_WATER_STATUS_OK, "columns");
+        check(fabs(many[0] / f[0] - 1) < 1e-5 && fabs(many[1] / f[1] - 1) < 1e-5 && many[2] == 0, "columns agree");
+        source[1] = NULL;
+        check(prob_water_eval_columns(sea, 3, source, observer, NULL, many) == PROB_WATER_STATUS_ARGUMENT, "a null column");
+        source[1] = x;
+        check(prob_water_eval_columns(sea, 3, source, observer, NULL, many) == PROB_WATER_STATUS_ROW, "columns not unit");
+        check(strstr(prob_water_last_error(), "row 2") != NULL, "names the row");
+    }
     check(prob_water_sample(sea, 3, to_source, uniforms, drawn, pdf, f) == PROB_WATER_STATUS_OK, "sample");
     check(prob_water_pdf(sea, 3, to_source, drawn, NULL, g) == PROB_WATER_STATUS_OK, "pdf");
     check(memcmp(pdf, g, sizeof pdf) == 0, "sample and pdf agree");
