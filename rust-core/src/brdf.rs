@@ -15,13 +15,13 @@ pub fn up<T: Real>() -> Vec3<T> {
     [T::of(0.0), T::of(0.0), T::of(1.0)]
 }
 
-/// The cosine of the angle to a wave normal, or a level surface's.
+/// The cosine of the angle to a wave normal, or a level surface's; to the last digit also where it is small, since f goes
+/// with its inverse.
 #[inline(always)]
 pub(crate) fn cosine<T: Real>(v: Vec3<T>, n: Option<Vec3<T>>) -> T {
-    match n {
-        Some(n) => dot(v, n),
-        None => v[2],
-    }
+    let Some(n) = n else { return v[2] };
+    let ([x, y, z], [nx, ny, nz]) = (each(v, T::Wide::widen), each(n, T::Wide::widen));
+    (x * nx + y * ny + z * nz).narrow()
 }
 
 /// `x/cos^2`, finite.
@@ -133,7 +133,7 @@ impl<T: Real> Facets<T> {
         let [xu, xc] = self.wind_frame(x * nz - z * nx, y * nz - z * ny);
         let zz = z * nz;
         Geometry {
-            cos: [dot(i, n), dot(o, n)],
+            cos: [cosine(i, Some(n)), cosine(o, Some(n))],
             cos_zeta,
             inv_cos2: over_square(length2, dot(h, n)),
             tilt_u: [xu, zz + hu * nu],
