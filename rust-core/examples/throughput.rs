@@ -3,6 +3,8 @@
 //! `cargo run --release -p prob-water --example throughput [-- REPEATS]`: every figure is measured
 //! `REPEATS` times (5 unless told), interleaved with the others, and given as the best and the median.
 
+use prob_water::batch::Columns;
+use prob_water::lanes::Level;
 use prob_water::real::Vec3;
 use prob_water::{Lobe, Parameters, Scalar, SlopeMeasure};
 use rand::{Rng, SeedableRng, rngs::StdRng};
@@ -11,6 +13,8 @@ use std::time::Instant;
 
 /// Directions to take: they stay in the second-level cache.
 const PAIRS: usize = 4096;
+/// What lanes are called in the output, by level.
+const LANES: [&str; 3] = ["lanes, portable", "lanes, avx2", "lanes, avx512"];
 /// Passes over them per measurement.
 const PASSES: usize = 50;
 /// Seas configured per measurement.
@@ -31,6 +35,7 @@ fn main() {
         let lobe = parameters.configure().expect("the parameters are valid").lobe;
         add::<f64>(&mut candidates, sea, "float64", lobe);
         add::<f32>(&mut candidates, sea, "float32", lobe.cast());
+        add_lanes(&mut candidates, sea, lobe.cast());
     }
 
     // The first round warms up.
@@ -71,8 +76,29 @@ fn add<T: Scalar + 'static>(to: &mut Vec<Candidate>, sea: &str, precision: &'sta
     one("sample", |lobe, (i, _, u)| _ = black_box(lobe.sample(*i, None, *u)));
 }
 
+/// Adds eval of a lobe in every kind of vector that the processor has.
+fn add_lanes(to: &mut Vec<Candidate>, sea: &str, lobe: Lobe<f32>) {
+    let mut rng = StdRng::seed_from_u64(1);
+    let mut directions = || -> [Vec<f32>; 3] {
+        let rows: Vec<Vec3<f32>> = (0..PAIRS).map(|_| direction(&mut rng)).collect();
+        [0, 1, 2].map(|k| rows.iter().map(|v| v[k]).collect())
+    };
+    let (i, o) = (directions(), directions());
+    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+        let (i, o) = (i.clone(), o.clone());
+        let run = move || {
+            let [i, o] = [&i, &o].map(|v| v.each_ref().map(Vec::as_slice));
+            let columns = Columns::new(i, o, None).expect("they are unit vectors");
+            let mut f = vec![0.0; PAIRS];
+            let pass = || columns.eval_on(level, black_box(&lobe), black_box(&mut f)).expect("as many rows");
+            rate(PASSES, pass) * PAIRS as f64
+        };
+        to.push((format!("eval {sea}"), LANES[level as usize], Box::new(run)));
+    }
+}
+
 /// Runs per second over `count` of them.
-fn rate(count: usize, run: impl Fn()) -> f64 {
+fn rate(count: usize, mut run: impl FnMut()) -> f64 {
     let start = Instant::now();
     (0..count).for_each(|_| run());
     count as f64 / start.elapsed().as_secs_f64()

@@ -4,8 +4,7 @@
 //! in one piece and written at once: its number, its float32 numbers, and a check sum (CRC-32) of both, all little-endian.
 //! Whatever stopped the build, rows that are whole are found again; a torn one can only be the last.
 
-use fs4::{FileExt, TryLockError};
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
@@ -26,7 +25,7 @@ impl Journal {
         let mut file =
             options.read(true).write(true).create(true).truncate(false).open(path).map_err(cannot)?;
         // Where files cannot be locked, two builds of one table write the same rows.
-        if let Err(TryLockError::WouldBlock) = FileExt::try_lock(&file) {
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
             return Err(format!("{}: another build is writing it", path.display()));
         }
         let mut start = Vec::new();
