@@ -4,7 +4,7 @@
 //! told), all in turn, on one thread.
 
 use prob_water::batch::Rows;
-use prob_water::{Across, EmpiricalLobe, Engagement, Ensemble, Parameters, Real, Surface, Table, Wind};
+use prob_water::{Across, EmpiricalLobe, Engagement, Ensemble, Parameters, Scalar, Surface, Table, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;
 use std::num::NonZeroU32;
@@ -100,7 +100,7 @@ fn main() {
 }
 
 /// A checked batch.
-fn batch<T: Real + 'static>(lobe: EmpiricalLobe, i: Vec<[T; 3]>, o: Vec<[T; 3]>) -> Box<dyn FnMut()> {
+fn batch<T: Scalar + 'static>(lobe: EmpiricalLobe, i: Vec<[T; 3]>, o: Vec<[T; 3]>) -> Box<dyn FnMut()> {
     let mut f = vec![T::of(0.0); i.len()];
     Box::new(move || {
         let rows = Rows::new(&i, &o, None).expect("they are unit vectors");
