@@ -32,8 +32,8 @@ def dot(a: Vector, b: Vector) -> mpf:
 
 
 def bisect(low: mpf, high: mpf, beyond) -> mpf:
-    """Where `beyond` begins to hold, to 45 digits."""
-    for _ in range(160):
+    """Where `beyond` begins to hold, to 30 digits."""
+    for _ in range(110):
         middle = (low + high) / 2
         low, high = (low, middle) if beyond(middle) else (middle, high)
     return high
@@ -124,7 +124,8 @@ def ierfc(x: mpf) -> mpf:
 
 def hidden(cos: mpf, spread: mpf) -> mpf:
     """cos F, with Eq. 66 as read."""
-    if spread == 0:
+    # Beyond nu of 1000 it is below 1e-434000.
+    if cos > 1000 * spread:
         return mpf(0)
     nu = cos / spread
     return cos * (mp.exp(-nu**2) / (SQRT_PI * nu) - mp.erfc(nu)) / 2
@@ -152,11 +153,17 @@ def foam_brdf(wavelength: mpf) -> mpf:
 
 
 class Value(NamedTuple):
-    """f, what it is without Gram-Charlier's factor, and U^2 + C^2."""
+    """f, what it is without Gram-Charlier's factor, and the tilt."""
 
     f: mpf
     size: mpf
-    reach: mpf
+    u: mpf
+    c: mpf
+
+    @property
+    def reach(self) -> mpf:
+        """U^2 + C^2."""
+        return self.u**2 + self.c**2
 
 
 class Sea:
@@ -201,7 +208,9 @@ class Sea:
             return [float(hidden(mp.sin(e), sigma * mp.cos(e)) / mp.sin(e)) for e in elevations]
 
         shadow, own = terms(self.sigma_shadow), terms(spread)
-        return any(float(self.rho(mp.sin((elevations[a] + elevations[b]) / 2))) * (1 + own[a])
+        # rho is at most 1, which settles most pairs.
+        return any(1 + own[a] > 1.11 * (1 + shadow[a] + shadow[b])
+                   and float(self.rho(mp.sin((elevations[a] + elevations[b]) / 2))) * (1 + own[a])
                    > 1.11 * (1 + shadow[a] + shadow[b]) for a in range(65) for b in range(a + 1))
 
     def in_wind(self, x: mpf, y: mpf) -> Vector:
@@ -221,7 +230,7 @@ class Sea:
         """f, 1/sr. Directions are unit vectors to a rounding; Eq. 61 is half the length of V_s + V_r, which suffers least."""
         cos_i, cos_r = dot(i, n), dot(o, n)
         if cos_i <= 0 or cos_r <= 0:
-            return Value(mpf(0), mpf(0), mpf(0))
+            return Value(mpf(0), mpf(0), mpf(0), mpf(0))
         half = [a + b for a, b in zip(i, o, strict=True)]
         length = mp.sqrt(dot(half, half))
         u, c = self.tilts(half, n)
@@ -230,7 +239,7 @@ class Sea:
         smooth = density * visible / (4 * cos_i * cos_r)
         factor = max(mpf(0), gram_charlier(self.c21, self.c03, u, c)) if self.line["gram_charlier"] else mpf(1)
         foam = self.foam * foam_brdf(mpf(self.line["wavelength"]))
-        return Value((1 - self.foam) * smooth * factor + foam, (1 - self.foam) * smooth + foam, u**2 + c**2)
+        return Value((1 - self.foam) * smooth * factor + foam, (1 - self.foam) * smooth + foam, u, c)
 
     def density(self, u: mpf, c: mpf, cos_xi: mpf) -> mpf:
         """p0/cos^4 xi, Eq. 72, with 1/cos^4 kept where facets are steep."""

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Pairs of directions of every sea.
-const PAIRS: usize = 40;
+const PAIRS: usize = 20;
 
 /// A sea and the number that lines know it by.
 struct Sea {
@@ -32,8 +32,9 @@ pub fn write(lines: &mut Lines) {
         let foamy = Parameters { whitecaps: true, ..all };
         f_rows(lines, "gaussian", &[gaussian], level);
         f_rows(lines, "shadowing", &[shadowed, gaussian], level);
-        f_rows(lines, "f", &[foamy], level);
-        f_rows(lines, "f_tilted", &[foamy], tilted);
+        f_rows(lines, "f", &[all], level);
+        f_rows(lines, "f_tilted", &[all], tilted);
+        f_rows(lines, "f_foamy", &[foamy], level);
         draws(lines, all);
         steep(lines);
     }

@@ -1,7 +1,7 @@
 //! What every stage of the model gives in float64 and float32 for random and extreme inputs, as lines of JSON:
 //! `validation/error_budget.py` compares them with the equations evaluated to 50 digits.
 //!
-//! `cargo run --release -p prob-water --example errors [-- ROWS]`: about so many rows a stage (3000 unless told), the same
+//! `cargo run --release -p prob-water --example errors [-- ROWS]`: about so many rows a stage (2000 unless told), the same
 //! in every run. A line has a `stage`, its inputs `x` and what came out, `y`, by number type; a `sea` describes the
 //! parameters that later lines name by number. Numbers read back to the same bits; infinity is null.
 
@@ -77,7 +77,7 @@ impl Lines {
 }
 
 fn main() {
-    let rows = std::env::args().nth(1).map_or(3000, |n| n.parse().expect("ROWS is a number"));
+    let rows = std::env::args().nth(1).map_or(2000, |n| n.parse().expect("ROWS is a number"));
     let out = BufWriter::new(std::io::stdout().lock());
     let mut lines = Lines { rng: StdRng::seed_from_u64(1), rows, seas: 0, out };
     scalars::write(&mut lines);

@@ -37,7 +37,9 @@ fn views(incidence: f64, thetas: impl Iterator<Item = f64>) -> Engagement {
 
 /// Means without obscuration, whose integral can be done otherwise.
 fn exact(lines: &mut Lines) {
-    for (w, footprint, incidence) in [(8.0, 0.15, 30.0), (24.0, 0.15, 60.0), (56.0, 0.05, 45.0)] {
+    let seas = (lines.rows / 200).clamp(1, 3);
+    for (w, footprint, incidence) in [(8.0, 0.15, 30.0), (24.0, 0.15, 60.0), (56.0, 0.05, 45.0)].into_iter().take(seas)
+    {
         let water = sea(Surface::Instance, w, footprint).configure().expect("the parameters are valid");
         let mut exact = Exact::new(&water).expect("M is 5");
         exact.obscuration = false;
@@ -51,7 +53,8 @@ fn exact(lines: &mut Lines) {
 
 /// The lobe from afar and the exact mean that it stands for, both as f cos theta_r; where the mean is above 1 % of its peak.
 fn ensemble(lines: &mut Lines) {
-    for (w, footprint) in [(4.0, 0.15), (8.0, 0.15), (24.0, 0.3), (56.0, 0.15)] {
+    let seas = (lines.rows / 200).clamp(1, 4);
+    for (w, footprint) in [(8.0, 0.15), (24.0, 0.3), (56.0, 0.15), (4.0, 0.15)].into_iter().take(seas) {
         let water = sea(Surface::Ensemble, w, footprint).configure().expect("the parameters are valid");
         let lobe = EnsembleLobe::new(&water).expect("M is 5");
         let exact = Exact::new(&water).expect("M is 5");
@@ -71,7 +74,7 @@ fn ensemble(lines: &mut Lines) {
 /// hold.
 fn empirical(lines: &mut Lines) {
     let table = Table::standard();
-    let seas = (lines.rows / 150).clamp(2, 20);
+    let seas = (lines.rows / 150).clamp(1, 20);
     for _ in 0..seas {
         let parameters = Parameters {
             whitecaps: true,

@@ -5,6 +5,7 @@ use prob_water::optics::{Fresnel, Reflectance, pure_water};
 use prob_water::shadowing::hidden;
 use prob_water::slopes::{gram_charlier, skewness, variances};
 use prob_water::wind::{friction_velocity, highest_wind_speed, wind_speed};
+use prob_water::real::{IERFC, IERFC_END};
 use prob_water::{Real, Wind, whitecap};
 use serde_json::json;
 use std::f64::consts::TAU;
@@ -64,7 +65,11 @@ fn shadowing(lines: &mut Lines) {
     let x = if lines.one(&[true, false]) { lines.uniform(0.0, 9.0) } else { lines.decades(1e-8, 9.0) };
     lines.row("ierfc", json!([x]), json!({"float64": [x.ierfc()]}));
     let single = x as f32;
-    lines.row("ierfc", json!([f64::from(single)]), json!({"float32": [f64::from(single.ierfc())]}));
+    // The polynomial of float32 without its rounding.
+    let bounded = f64::from(single.min(IERFC_END));
+    let polynomial = IERFC.iter().rev().fold(0.0, |sum, b| sum * bounded + f64::from(*b)).powi(2);
+    let y = json!({"float32": [f64::from(single.ierfc())], "approximation": [polynomial]});
+    lines.row("ierfc", json!([f64::from(single)]), y);
 
     let (theta, sigma) = (lines.zenith(), lines.decades(1e-3, 0.45));
     let (cos, spread) = (theta.cos(), sigma * theta.sin());

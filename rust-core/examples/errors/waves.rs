@@ -135,7 +135,7 @@ fn mesh(lines: &mut Lines) {
                 corner(&vertices.normals, 1),
                 corner(&vertices.normals, 2),
             ];
-            lines.row("mesh", json!([place, LATE, ring.footprint]), json!({"float32": y}));
+            lines.row("mesh_vertex", json!([place, LATE, ring.footprint]), json!({"float32": y}));
         }
         first += count;
     }
