@@ -17,7 +17,7 @@ from error_rows import CONFIGURED, GROUPS, KINDS, ROWS, Row
 
 EXAMPLE = ROOT / "target/release/examples/errors"
 #: Rows a stage, about.
-COUNT, QUICK_COUNT = 2000, 200
+COUNT, QUICK_COUNT = 2000, 150
 
 
 def compare(example: Path, count: int) -> Comparison:
@@ -115,10 +115,11 @@ CLOSING = """\
   and the empirical table follow with 0.1 to 2 %.
 - **float32 directions**: their rounding, 3e-8, moves the half vector by 6e-5 standard deviations of the narrowest lobe, and by
   whole ones where source and observer face each other at the horizon. No arithmetic gets that back.
-- **float32 arithmetic** adds 7e-8 in the median, a rounding of the result. Only where Gram-Charlier's polynomial is large
-  does the rounding of c21 and c03 show, up to 1e-5, all tilts and the polynomial being formed in float64.
-- **float64** is at its last digits, but for the narrowest lobes: sigma_u of 1e-3 beside a wide sigma_c makes 1e-16 of the
-  wind's azimuth 1e-13 standard deviations, and the polynomial makes that 1e-11 of f.
+- **float32 arithmetic** adds roundings of the result, 1e-7 of it, since tilts and Gram-Charlier's polynomial are formed in
+  float64. Far out, where that polynomial is 50 to 130, they are up to 3e-5 of the lobe without it.
+- **float64** is at its last digits but for the wind's azimuth: 1e-16 of it turns a wide crosswind tilt into 1e-14 to 1e-13
+  standard deviations of a narrow sigma_u, and the polynomial makes that 1e-12 to 1e-11 of f. With the azimuth's rounding in
+  the reference too, the Gaussian's worst error falls from 2e-13 to 4e-15 (measured once).
 - **Waves far out** lose digits in the phase k x alone: 1e-10 of a standard deviation at 10 km.
 """
 

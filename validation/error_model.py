@@ -283,8 +283,8 @@ class Sea:
         if self.line["slope"]:
             tilt, jacobian = [h[0] / h[2], h[1] / h[2]], h[2]**3
         else:
-            angle = mp.atan2(flat, h[2])
-            tilt, jacobian = [h[0] * angle / flat, h[1] * angle / flat], flat / angle
+            over_sine = mp.atan2(flat, h[2]) / flat if flat else mpf(1)
+            tilt, jacobian = [h[0] * over_sine, h[1] * over_sine], 1 / over_sine
         z = [t / s for t, s in zip(tilt, self.proposal, strict=True)]
         phi = mp.exp(-dot(z, z) / 2) / (2 * mp.pi)
         r_d, v = dot(z, towards), 1 / d

@@ -143,7 +143,13 @@ fn pair(lines: &mut Lines, water: &Water, n: Vec3<f64>) -> [Vec3<f64>; 2] {
     let f = &water.lobe.facets;
     loop {
         let i = lines.direction();
-        let (r, psi) = (lines.uniform(0.0, REACH).sqrt(), lines.uniform(0.0, TAU));
+        // A quarter close to the specular direction, where both may be at the horizon.
+        let r = if lines.one(&[true, false, false, false]) {
+            lines.decades(1e-5, 1.0)
+        } else {
+            lines.uniform(0.0, REACH).sqrt()
+        };
+        let psi = lines.uniform(0.0, TAU);
         let tilts = [r * psi.cos() * f.sigma_u, r * psi.sin() * f.sigma_c];
         let tilts = if f.slope_measure { tilts.map(f64::atan) } else { tilts };
         let normal = [n[0] * f.cos_wind + n[1] * f.sin_wind, n[1] * f.cos_wind - n[0] * f.sin_wind];

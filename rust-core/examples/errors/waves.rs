@@ -44,7 +44,8 @@ fn sine(lines: &mut Lines) {
 }
 
 fn spectrum(lines: &mut Lines) {
-    let w = lines.decades(0.5, 238.65);
+    // From 7.885 cm/s (fresh 7.934) on Eq. 8 has roots, two at once.
+    let w = if lines.one(&[true, false, false]) { lines.uniform(7.87, 7.95) } else { lines.decades(0.5, 238.65) };
     let depth = if lines.one(&[true, false]) { f64::INFINITY } else { lines.decades(0.5, 100.0) };
     let fetch = if lines.one(&[true, false]) { f64::INFINITY } else { lines.decades(1e3, 1e5) };
     let (water, density) = lines.one(&[(Body::Ocean, 1.025), (Body::Fresh, 1.0)]);
