@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import error_plot
-from error_compare import Comparison, index_between_entries
+from error_compare import Comparison
 from error_model import ROOT
 from error_rows import CONFIGURED, GROUPS, KINDS, ROWS, Row
 
@@ -23,7 +23,6 @@ COUNT, QUICK_COUNT = 2000, 150
 def compare(example: Path, count: int) -> Comparison:
     """Runs the example and compares what it prints."""
     comparison = Comparison()
-    index_between_entries(comparison)
     with subprocess.Popen([example, str(count)], stdout=subprocess.PIPE, text=True) as process:
         comparison.read(process.stdout)
     if process.returncode != 0:
@@ -93,9 +92,10 @@ INTRODUCTION = """\
 # Error budget
 
 Every stage of the model in float64, in float32, and where it is an approximation by itself, against the equations of
-[model.md](model.md) evaluated to 50 digits (`validation/error_model.py`, `error_waves.py`; nothing there is taken from
-the Rust). `cargo xtask errors` writes this page in about two minutes; `--quick` prints a tenth of it, and
-`validation/test_error_budget.py` holds the bounds in every test.
+[model.md](model.md) evaluated to 50 digits. They were written a second time for it (`error_model.py`, `error_lobe.py`,
+`error_waves.py` in `validation/`); only how far the proposal of draws is widened is taken from the Rust. `cargo xtask errors`
+writes this page in a minute and a half on two cores; `--quick` prints the table from a tenth of the inputs, and
+`validation/test_error_budget.py` holds its bounds in every test.
 
 ![Error of every stage](images/error-budget.png)
 
@@ -105,7 +105,6 @@ of all directions within 10 degrees of the horizon, to 89.9999; standard deviati
 float32 arithmetic does to float32 directions; what rounding the directions costs stands in a row of its own. Sines,
 exponents and tilts are not exposed: without Gram-Charlier and shadowing f is the Gaussian of the tilts, and f with
 shadowing over f without is G.
-
 """
 
 CLOSING = """\

@@ -11,7 +11,8 @@ import numpy as np
 from mpmath import mp, mpf
 
 import error_model as model
-from error_model import Sea, exact
+from error_lobe import Sea, Value
+from error_model import exact
 from error_waves import MeanOverSlopes, Spectrum, crossing, waves_at
 
 #: Errors of a line: row of the budget, kind, error.
@@ -40,8 +41,9 @@ class Comparison:
         self.seas: dict[int, Sea] = {}
         self.mesh: list[list[float]] = []
         self.means: dict[tuple, MeanOverSlopes] = {}
-        self.double: model.Value | None = None
+        self.double: Value | None = None
         self.errors: dict[tuple[str, str], list[float]] = defaultdict(list)
+        self.errors["index", "approximation"] = [float(error) for error in model.index_between_entries()]
 
     def read(self, lines: Iterable[str]) -> None:
         """Compares every line."""
@@ -117,7 +119,7 @@ class Comparison:
 
     # The BRDF.
 
-    def values(self, x) -> list[model.Value]:
+    def values(self, x) -> list[Value]:
         """f of every sea of a line; none where the half vector lies beyond what is looked at."""
         ids, *directions = x
         values = [self.seas[number].f(*map(exact, directions)) for number in ids]
@@ -175,7 +177,8 @@ class Comparison:
         expected = self.seas[number].draw(exact(i), exact(u))
         for kind, found in y.items():
             if expected[2] > 0 and any(found):
-                yield "draw", kind, mp.sqrt(sum((a - b)**2 for a, b in zip(found, expected, strict=True)))
+                off = [a - b for a, b in zip(found, expected, strict=True)]
+                yield "draw", kind, mp.sqrt(model.dot(off, off))
 
     # Waves.
 
@@ -225,7 +228,8 @@ class Comparison:
         n = 1 / mp.sqrt(1 + sx**2 + sy**2)
         z, *normal = y["float32"]
         yield "mesh", "float32", abs(z - height)
-        yield "mesh_normal", "float32", mp.sqrt(sum((a - b)**2 for a, b in zip(normal, (-sx * n, -sy * n, n), strict=True)))
+        off = [a - b for a, b in zip(normal, (-sx * n, -sy * n, n), strict=True)]
+        yield "mesh_normal", "float32", mp.sqrt(model.dot(off, off))
 
     # Means.
 
@@ -243,11 +247,3 @@ class Comparison:
     def empirical(self, x, y) -> Found:
         yield "empirical", "approximation", relative(y["float64"][0], mpf(x[1]))
         yield "empirical", "float32", relative(y["float32"][0], mpf(y["float64"][0]))
-
-
-def index_between_entries(comparison: Comparison) -> None:
-    """What linear interpolation of the index errs by: a quarter of what an entry is off when it is left out."""
-    table = model.water_index()
-    for (a, p), (b, q), (c, r) in zip(table, table[1:], table[2:]):
-        off = abs(p + (r - p) * (b - a) / (c - a) - q) / 4
-        comparison.errors["index", "approximation"].append(float(off / q))

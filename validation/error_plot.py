@@ -9,9 +9,8 @@ from matplotlib.lines import Line2D
 from error_compare import Comparison
 from error_rows import GROUPS, KINDS
 
-#: Colour and place beside the row's line, by kind.
-LOOKS = {"float64": ("#1f5fa8", 0.0), "float32": ("#d9711a", -0.16), "lanes": ("#7b3fa0", 0.04),
-         "approximation": ("#2a8a4a", 0.24)}
+#: Colour by kind.
+COLOURS = {"float64": "#1f5fa8", "float32": "#d9711a", "lanes": "#7b3fa0", "approximation": "#2a8a4a"}
 #: What errors that are not relative are in.
 UNITS = {"absolute, m": "m", "absolute, radians": "rad", "absolute, standard": "std", "absolute": "abs.",
          "over its standard": "std"}
@@ -32,13 +31,14 @@ def draw(comparison: Comparison, path: Path) -> None:
         for number, row in enumerate(group.rows):
             if number % 2 == 0:
                 axes.axhspan(y - 0.5, y + 0.5, color="0.955", zorder=0)
-            for kind in KINDS:
-                found = comparison.of(row.name, kind)
-                if found is None:
-                    continue
-                colour, offset = LOOKS[kind]
+            kinds = [kind for kind in KINDS if comparison.of(row.name, kind)]
+            # float64 lies far left of the others, which share the row.
+            others = [kind for kind in kinds if kind != "float64"]
+            for kind in kinds:
+                colour, found = COLOURS[kind], comparison.of(row.name, kind)
+                place = (others.index(kind) + 0.5) / len(others) - 0.5 if kind in others else 0.0
                 median, worst = (max(x, 1.3 * LEAST) for x in found)
-                at = y + offset
+                at = y + 0.75 * place
                 axes.plot([median, worst], [at, at], color=colour, linewidth=2.2, solid_capstyle="round")
                 axes.plot(median, at, "o", color=colour, markersize=4, markerfacecolor="white")
                 axes.plot(worst, at, "o", color=colour, markersize=4)
@@ -60,7 +60,7 @@ def draw(comparison: Comparison, path: Path) -> None:
         axes.axvline(value, color="0.45", linewidth=0.9, linestyle=":")
         axes.annotate(name, (value, y - 0.5), rotation=90, fontsize=7.5, color="0.35", ha="right", va="bottom")
     shown = [kind for kind in KINDS if any(key[1] == kind for key in comparison.errors)]
-    marks = [Line2D([], [], color=LOOKS[kind][0], linewidth=2.2, label=kind) for kind in shown]
+    marks = [Line2D([], [], color=COLOURS[kind], linewidth=2.2, label=kind) for kind in shown]
     marks += [Line2D([], [], color="0.3", marker="o", markerfacecolor="white", linestyle="", label="median"),
               Line2D([], [], color="0.3", marker="o", linestyle="", label="worst"),
               Line2D([], [], color="0.3", marker="|", linestyle="", markeredgewidth=1.4, label="bound of the worst")]

@@ -1,4 +1,4 @@
-"""Spectrum, drawn waves and their sums to 50 digits, and exact means by a quadrature of their own: from docs/model.md."""
+"""Spectrum, drawn waves and their sums to 50 digits, and exact means by another quadrature: from docs/model.md."""
 
 from functools import cached_property
 
@@ -6,7 +6,8 @@ import numpy as np
 from mpmath import mp, mpf
 from scipy.special import erfc, j0
 
-from error_model import Sea, Vector, bisect, dot, number, wind_speed
+from error_lobe import Sea
+from error_model import Vector, bisect, dot, number, wind_speed
 
 G, ALPHA = mpf(981), number("8.1e-3")
 
@@ -78,8 +79,8 @@ class Spectrum:
 
 
 def waves_at(waves: list[list[float]], place: Vector, time: float, footprint: float | None = None) -> Vector:
-    """Height, slopes and acceleration, Eqs. 31-40 and 52, of waves given by k, psi, phi, a and omega; where a footprint is
-    given, of what stays geometry there."""
+    """Height, slopes and acceleration, Eqs. 31-40 and 52, of waves given by k, psi, phi, a and omega; where a
+    footprint is given, of what stays geometry there."""
     sums = [[], [], [], []]
     for k, psi, phi, a, omega in (map(mpf, wave) for wave in waves):
         if footprint is not None:
@@ -109,8 +110,8 @@ def crossing(waves: list[list[float]], origin: Vector, direction: Vector, near: 
 
 
 class MeanOverSlopes:
-    """Exact means of the facets' f over drawn slopes, without obscuration: characteristic function and integrals on plain
-    grids in float64, good to 1e-6."""
+    """Exact means of the facets' f over drawn slopes, without obscuration: characteristic function and integrals on
+    plain grids in float64."""
 
     def __init__(self, w: float, footprint: float, azimuth: float, ior: float, count: int = 5) -> None:
         self.sea = Sea({"friction_velocity": w, "footprint": footprint, "wind_direction": azimuth, "ior": ior,
@@ -140,7 +141,8 @@ class MeanOverSlopes:
         c = (c / (2 * len(phi)))**count
         self.slopes = [np.linspace(-e, e, 2 * int(6 * e / min(s, d)) + 2)[1:]
                        for s, d, e in zip(self.sigma, drawn, self.end, strict=True)]
-        wave = [np.cos(np.outer(s, f)) * (f[1] / np.pi) * np.where(f > 0, 1, 0.5) for s, f in zip(self.slopes, q, strict=True)]
+        wave = [np.cos(np.outer(s, f)) * (f[1] / np.pi) * np.where(f > 0, 1, 0.5)
+                for s, f in zip(self.slopes, q, strict=True)]
         area = np.prod([s[1] - s[0] for s in self.slopes])
         self.weights = wave[0] @ c @ wave[1].T * area
 

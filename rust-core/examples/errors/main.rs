@@ -52,14 +52,18 @@ impl Lines {
 
     /// An angle from the zenith in radians, half of them within ten degrees of the horizon, to [`GRAZING`].
     fn zenith(&mut self) -> f64 {
-        let degrees =
-            if self.rng.random() { self.uniform(0.0, 90.0) } else { 90.0 - self.decades(90.0 - GRAZING, 10.0) };
+        let degrees = if self.rng.random() {
+            self.uniform(0.0, 90.0)
+        } else {
+            90.0 - self.decades(90.0 - GRAZING, 10.0)
+        };
         degrees.min(GRAZING).to_radians()
     }
 
     /// A unit vector of two angles in radians.
     fn direction(&mut self) -> [f64; 3] {
-        let ((s, c), (sp, cp)) = (self.zenith().sin_cos(), self.uniform(0.0, std::f64::consts::TAU).sin_cos());
+        let ((s, c), (sp, cp)) =
+            (self.zenith().sin_cos(), self.uniform(0.0, std::f64::consts::TAU).sin_cos());
         [s * cp, s * sp, c]
     }
 

@@ -38,7 +38,8 @@ fn views(incidence: f64, thetas: impl Iterator<Item = f64>) -> Engagement {
 /// Means without obscuration, whose integral can be done otherwise.
 fn exact(lines: &mut Lines) {
     let seas = (lines.rows / 200).clamp(1, 3);
-    for (w, footprint, incidence) in [(8.0, 0.15, 30.0), (24.0, 0.15, 60.0), (56.0, 0.05, 45.0)].into_iter().take(seas)
+    for (w, footprint, incidence) in
+        [(8.0, 0.15, 30.0), (24.0, 0.15, 60.0), (56.0, 0.05, 45.0)].into_iter().take(seas)
     {
         let water = sea(Surface::Instance, w, footprint).configure().expect("the parameters are valid");
         let mut exact = Exact::new(&water).expect("M is 5");
@@ -62,7 +63,9 @@ fn ensemble(lines: &mut Lines) {
             let engagement = views(incidence, (-17..=17).map(|k| 5.0 * f64::from(k)));
             let means = exact.means(&engagement);
             let peak = means.iter().map(|m| m.f_cos).fold(0.0, f64::max);
-            for (mean, [i, o]) in means.into_iter().zip(engagement.ways()).filter(|(m, _)| m.f_cos > 0.01 * peak) {
+            for (mean, [i, o]) in
+                means.into_iter().zip(engagement.ways()).filter(|(m, _)| m.f_cos > 0.01 * peak)
+            {
                 let x = json!([incidence, o[2].acos().to_degrees(), mean.f_cos]);
                 lines.row("ensemble", x, json!({"float64": [lobe.eval(i, o) * o[2]]}));
             }

@@ -2,10 +2,10 @@
 
 use crate::Lines;
 use prob_water::optics::{Fresnel, Reflectance, pure_water};
+use prob_water::real::{IERFC, IERFC_END};
 use prob_water::shadowing::hidden;
 use prob_water::slopes::{gram_charlier, skewness, variances};
 use prob_water::wind::{friction_velocity, highest_wind_speed, wind_speed};
-use prob_water::real::{IERFC, IERFC_END};
 use prob_water::{Real, Wind, whitecap};
 use serde_json::json;
 use std::f64::consts::TAU;

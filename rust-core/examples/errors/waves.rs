@@ -35,7 +35,8 @@ pub fn write(lines: &mut Lines) {
 fn sine(lines: &mut Lines) {
     let component = Component { wave_number: 1.0, phase: 0.0, azimuth: 0.0, amplitude: 1.0, frequency: 1.0 };
     let surface = RealisedSurface::new(std::iter::once(component), 0.0);
-    let size = if lines.one(&[true, false]) { lines.decades(1e-9, LARGEST_PHASE) } else { lines.uniform(0.0, 1e4) };
+    let size =
+        if lines.one(&[true, false]) { lines.decades(1e-9, LARGEST_PHASE) } else { lines.uniform(0.0, 1e4) };
     // Next to multiples of a quarter turn sine or cosine are small.
     let size = if lines.one(&[true, false, false]) { (size / PI).round() * 0.5 * PI } else { size };
     let angle = size * lines.one(&[-1.0, 1.0]);
@@ -45,7 +46,8 @@ fn sine(lines: &mut Lines) {
 
 fn spectrum(lines: &mut Lines) {
     // From 7.885 cm/s (fresh 7.934) on Eq. 8 has roots, two at once.
-    let w = if lines.one(&[true, false, false]) { lines.uniform(7.87, 7.95) } else { lines.decades(0.5, 238.65) };
+    let w =
+        if lines.one(&[true, false, false]) { lines.uniform(7.87, 7.95) } else { lines.decades(0.5, 238.65) };
     let depth = if lines.one(&[true, false]) { f64::INFINITY } else { lines.decades(0.5, 100.0) };
     let fetch = if lines.one(&[true, false]) { f64::INFINITY } else { lines.decades(1e3, 1e5) };
     let (water, density) = lines.one(&[(Body::Ocean, 1.025), (Body::Fresh, 1.0)]);
