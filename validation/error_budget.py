@@ -107,13 +107,13 @@ exponents and tilts are not exposed: without Gram-Charlier and shadowing f is th
 shadowing over f without is G.
 """
 
-CLOSING = """\
+CLOSING = """
 ## What dominates
 
 - **The model's choices**, by far: Schlick's formula is off by up to a quarter of Fresnel's equations. The sea from afar
   and the empirical table follow with 0.1 to 2 %.
 - **float32 directions**: their rounding, 3e-8, moves the half vector by 6e-5 standard deviations of the narrowest lobe, and by
-  whole ones where source and observer face each other at the horizon. No arithmetic gets that back.
+  a third of one where source and observer face each other at the horizon. No arithmetic gets that back.
 - **float32 arithmetic** adds roundings of the result, 1e-7 of it, since tilts and Gram-Charlier's polynomial are formed in
   float64. Far out, where that polynomial is 50 to 130, they are up to 3e-5 of the lobe without it.
 - **float64** is at its last digits but for the wind's azimuth: 1e-16 of it turns a wide crosswind tilt into 1e-14 to 1e-13
