@@ -5,6 +5,7 @@ mod bench;
 mod build;
 mod c_api;
 mod cargo;
+mod errors;
 mod figures;
 mod render;
 mod setup;
@@ -23,6 +24,7 @@ The commands of prob-water, each run as `cargo xtask <command>`:
                     build, then render the review images into out/ (options of validation/render.py)
   figures [--quick] [--only NAME]
                     build the command and draw the report's figures into out/report/ (options of validation/figures.py)
+  errors [--quick]  write docs/error-budget.md: every stage in float64 and float32 against 50 digits
   test              run every check: Rust, C, plugin, Python, style
   verify            the long campaigns: more samples, the live peer, the table docs/float32.md
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
@@ -60,6 +62,7 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["build", "--out", directory] => build::build(&std::path::absolute(directory)?)?,
         ["render", ..] => render::render(&arguments[1..])?,
         ["figures", ..] => figures::figures(&arguments[1..])?,
+        ["errors", ..] => errors::errors(&arguments[1..])?,
         ["bench", ..] => bench::bench(&arguments[1..])?,
         ["test"] => test::test()?,
         ["verify"] => test::verify()?,

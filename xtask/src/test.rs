@@ -2,7 +2,7 @@
 //!
 //! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
 
-use crate::{build, c_api, figures, setup, util};
+use crate::{build, c_api, errors, figures, setup, util};
 use anyhow::{Result, bail};
 use std::time::{Duration, Instant};
 
@@ -75,6 +75,7 @@ fn pytest() -> Result<Outcome> {
 
 fn run_pytest(options: &[&str]) -> Result<()> {
     figures::build_command()?;
+    errors::build_example()?;
     util::run(
         util::command(setup::python())
             .args(["-m", "pytest", "validation", "-q", "-rs", "-p", "no:cacheprovider"])

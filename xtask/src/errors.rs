@@ -1,0 +1,33 @@
+//! The error budget: docs/error-budget.md written by `validation/error_budget.py`, with the example just built.
+
+use crate::{setup, util};
+use anyhow::Result;
+
+/// Builds the example and compares; the arguments are the script's own.
+pub fn errors(arguments: &[String]) -> Result<()> {
+    build_example()?;
+    setup::setup()?;
+    util::run(
+        util::command(setup::python()).arg("validation/error_budget.py").args(arguments),
+        "validation/error_budget.py",
+    )
+}
+
+/// Builds `target/release/examples/errors`, wherever else cargo is told to build.
+pub fn build_example() -> Result<()> {
+    println!("build: the example errors");
+    util::run(
+        util::cargo().args([
+            "build",
+            "--release",
+            "--quiet",
+            "-p",
+            "prob-water",
+            "--example",
+            "errors",
+            "--target-dir",
+            "target",
+        ]),
+        "cargo build -p prob-water --example errors",
+    )
+}
