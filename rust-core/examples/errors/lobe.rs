@@ -3,6 +3,7 @@
 
 use crate::Lines;
 use crate::scalars::REACH;
+use prob_water::batch::Columns;
 use prob_water::brdf::up;
 use prob_water::real::{Vec3, dot};
 use prob_water::{Fresnel, Lobe, Parameters, SlopeMeasure, Water, Wind};
@@ -87,11 +88,22 @@ fn f_rows(lines: &mut Lines, stage: &str, of: &[Parameters], normal: impl Fn(&mu
     }
 }
 
-/// f in every kind of float32, by its name. (Lanes of float32 are one more entry.)
+/// f in every kind of float32, by its name: scalars, and the best lanes that this processor has. Level normals are left out,
+/// as a flat sea leaves them.
 fn singles(seas: &[Sea], i: Vec3<f32>, o: Vec3<f32>, n: Vec3<f32>) -> Vec<(&'static str, Value)> {
     let scalar: Vec<_> =
         seas.iter().map(|sea| f64::from(sea.water.lobe.cast::<f32>().eval(i, o, n))).collect();
-    vec![("float32", json!(scalar))]
+    let normals = (n != up::<f32>()).then_some(&n);
+    let columns = [&i, &o].map(|v| v.each_ref().map(std::slice::from_ref));
+    let normals = normals.map(|n| n.each_ref().map(std::slice::from_ref));
+    let columns = Columns::new(columns[0], columns[1], normals).expect("unit vectors");
+    let lanes = |sea: &Sea| {
+        let mut f = [0.0];
+        columns.eval(&sea.water.lobe.cast(), &mut f).expect("one row");
+        f64::from(f[0])
+    };
+    let lanes: Vec<_> = seas.iter().map(lanes).collect();
+    vec![("float32", json!(scalar)), ("lanes", json!(lanes))]
 }
 
 /// The density of draws, and draws.

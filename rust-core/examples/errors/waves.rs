@@ -5,7 +5,7 @@ use glam::DVec3;
 use prob_water::cast::Path;
 use prob_water::spectrum::Spectrum;
 use prob_water::waves::{Component, Draws, Numbers};
-use prob_water::{Body, Layout, Mesh, Parameters, RealisedSurface, Surface, Water, Wind};
+use prob_water::{Body, Layout, Mesh, Parameters, RealisedSurface, Surface, Water, WaveSums, Wind};
 use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
 
@@ -99,8 +99,11 @@ fn sums(lines: &mut Lines) {
     let waves = some_waves(lines, [0.01, 1.0], [1.0, 120.0]);
     let (azimuth, time) = (lines.uniform(0.0, TAU), lines.uniform(0.0, LATE));
     let place = [FAR * azimuth.cos(), FAR * azimuth.sin()];
-    let p = RealisedSurface::new(waves.iter().copied(), time).point(place);
-    let y = json!({"float64": [p.height, p.slope[0], p.slope[1], p.acceleration]});
+    let surface = RealisedSurface::new(waves.iter().copied(), time);
+    let mut points = [surface.point(place); 2];
+    WaveSums::new(&surface).points(&[place], &mut points[1..]);
+    let [float64, lanes] = points.map(|p| [p.height, p.slope[0], p.slope[1], p.acceleration]);
+    let y = json!({"float64": float64, "lanes": lanes});
     lines.row("sum", json!([listed(&waves), place, time]), y);
 }
 
