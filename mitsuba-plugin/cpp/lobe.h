@@ -182,7 +182,7 @@ template <typename Float_> struct Lobe {
         g.tilt_c = slope_measure ? tangent<Fine>(c, z, inv_z) : angle<Fine>(c, z);
         g.slope_u = u.hi * inv_z;
         g.slope_c = c.hi * inv_z;
-        g.tan2_xi = flat2 * dr::square(inv_z);
+        g.tan2_xi = flat2 / dr::square(z.hi);
         g.inv_cos2_xi = 1.f + g.tan2_xi;
         return g;
     }
@@ -470,7 +470,14 @@ private:
             else
                 odd = dr::fmadd(skew_c2, c2, odd);
             // As printed, without the sign of the tilt.
-            p *= larger(dr::fmadd(as_printed ? -dr::abs(u.hi) : u.hi, odd, even), 0.f);
+            Float k = dr::fmadd(as_printed ? -dr::abs(u.hi) : u.hi, odd, even);
+            if constexpr (Fine) {
+                // What rounding took from the tilt, by the highest powers' derivative.
+                Float u0 = dr::detach(u.hi), slope = dr::fmadd(4.f * U4, u0, 3.f * skew_u2) * dr::detach(u2);
+                if (!as_printed)
+                    k = dr::fmadd(slope, u.lo, k);
+            }
+            p *= larger(k, 0.f);
         }
 
         // Eqs. 61-67, at least what the facets themselves hide where the bound is in force.

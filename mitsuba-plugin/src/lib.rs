@@ -21,8 +21,8 @@ mod ffi {
         sigma_u: f64,
         sigma_c: f64,
         scale: f32,
-        c21: f32,
-        c03: f32,
+        c21: f64,
+        c03: f64,
         steep_gain: f32,
         sigma_shadow: f32,
         bound: f32,
@@ -207,7 +207,8 @@ impl Options {
         };
         let facets = (!varied.is_empty()).then(|| FacetTable::new(&water));
         let table = self.table.as_ref().map(|(name, _)| name.clone());
-        Ok(Box::new(Water { water, lobe: lobe.cast(), waves, facets, table }))
+        let skewness = [lobe.facets.c21, lobe.facets.c03];
+        Ok(Box::new(Water { water, lobe: lobe.cast(), skewness, waves, facets, table }))
     }
 }
 
@@ -216,6 +217,8 @@ pub struct Water {
     water: prob_water::Water,
     /// In Mitsuba's float32: the facets, or what draws directions for the sea from afar.
     lobe: Lobe<f32>,
+    /// Its c21 and c03 before they were rounded: Gram-Charlier's polynomial multiplies their last digits.
+    skewness: [f64; 2],
     waves: Waves,
     /// Where the footprint changes from place to place.
     facets: Option<FacetTable>,
@@ -249,8 +252,8 @@ impl Water {
             sigma_u: f.sigma_u,
             sigma_c: f.sigma_c,
             scale: f.scale,
-            c21: f.c21,
-            c03: f.c03,
+            c21: self.skewness[0],
+            c03: self.skewness[1],
             steep_gain: f.steep_gain,
             sigma_shadow: f.sigma_shadow,
             bound: f.bound,
