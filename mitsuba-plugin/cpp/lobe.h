@@ -441,6 +441,11 @@ private:
         // p/cos^4 xi (Eqs. 72-73, 78-79).
         Pair u = scaled<Fine>(g.tilt_u, inv_width_u, inv_width_u_lo),
              c = scaled<Fine>(g.tilt_c, inv_width_c, inv_width_c_lo);
+        if (as_printed) {
+            // Without the sign of the tilt.
+            Mask rises = u.hi > 0.f;
+            u = { dr::select(rises, -u.hi, u.hi), dr::select(rises, -u.lo, u.lo) };
+        }
         Float u2 = dr::square(u.hi), c2 = dr::square(c.hi), gauss;
         if constexpr (Fine) {
             // What is left of the squares beside whole numbers loses no digits.
@@ -469,13 +474,11 @@ private:
                 even += dr::fmadd(printed_c2, c2, printed);
             else
                 odd = dr::fmadd(skew_c2, c2, odd);
-            // As printed, without the sign of the tilt.
-            Float k = dr::fmadd(as_printed ? -dr::abs(u.hi) : u.hi, odd, even);
+            Float k = dr::fmadd(u.hi, odd, even);
             if constexpr (Fine) {
                 // What rounding took from the tilt, by the highest powers' derivative.
-                Float u0 = dr::detach(u.hi), slope = dr::fmadd(4.f * U4, u0, 3.f * skew_u2) * dr::detach(u2);
-                if (!as_printed)
-                    k = dr::fmadd(slope, u.lo, k);
+                Float slope = dr::fmadd(4.f * U4, dr::detach(u.hi), 3.f * skew_u2);
+                k = dr::fmadd(slope * dr::detach(u2), u.lo, k);
             }
             p *= larger(k, 0.f);
         }
