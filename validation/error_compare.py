@@ -130,7 +130,7 @@ class Comparison:
             for kind, (found,) in y.items():
                 error = relative(found, value.f)
                 yield "gaussian", kind, error
-                # Of float32 it would be the result's rounding: its tilts are formed in float64.
+                # Of float32 it would be the result's rounding: its tilts have digits to spare.
                 if kind == "float64" and value.reach > 1:
                     yield "tilts", kind, error / value.reach
 

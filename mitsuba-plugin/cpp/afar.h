@@ -62,7 +62,7 @@ template <typename Float_> struct Afar {
             d_u *= inv_d;
             d_c *= inv_d;
             Float variance = larger(dr::fmadd(d_u * d_u, cell[3], d_c * d_c * cell[4]), 0.f), spread = dr::sqrt(variance),
-                  rho = lobe.template reflectance<Float>(smaller(.5f * dr::norm(i + o), 1.f)), shadowing = 0.f;
+                  rho = lobe.reflectance(smaller(.5f * dr::norm(i + o), 1.f)), shadowing = 0.f;
             auto visible_at = [&](const Float &step, const Float &across) {
                 Float s_u = dr::fmadd(d_u, step, cell[1]), s_c = dr::fmadd(d_c, step, cell[2]);
                 return visible(lobe, rho, i_u, i_c, i.z(), o_u, o_c, o.z(), s_u, s_c, across);
@@ -113,8 +113,8 @@ template <typename Float_> struct Afar {
         if (report)
             reflected *= o.z();
         // Over cos theta_i (1 + L_i + L_o).
-        auto [h_i, h_o] = lobe.hidden(i.z(), waves(i_u, i_c), o.z(), waves(o_u, o_c));
-        Float over = dr::fmadd(i.z(), o.z(), dr::fmadd(o.z(), h_i.area / h_i.over, i.z() * h_o.area / h_o.over));
+        Float h_i = lobe.hidden(i.z(), waves(i_u, i_c)), h_o = lobe.hidden(o.z(), waves(o_u, o_c)),
+              over = dr::fmadd(i.z(), o.z(), dr::fmadd(o.z(), h_i, i.z() * h_o));
         return dr::select(lit, reflected * o.z() / larger(over, Lobe<Float>::Tiny), 0.f);
     }
 
@@ -176,10 +176,10 @@ private:
             Float a = dr::fmadd(z, s_u, u) * n_z * lobe.sigma_u, b = dr::fmadd(z, s_c, c) * n_z * lobe.sigma_c;
             return Float(dr::SqrtTwo<float> * dr::sqrt(dr::fmadd(a, a, b * b)));
         };
-        auto [area, over] = lobe.unshadowed(rho, cos_i, cos_o, [&] {
+        Float area = lobe.unshadowed(rho, cos_i, cos_o, [&] {
             return std::pair(spread(i_u, i_c, i_z), spread(o_u, o_c, o_z));
         });
-        return dr::select(lit, (report ? cos_i : both) * over / larger(area, Lobe<Float>::Tiny), 0.f);
+        return dr::select(lit, (report ? cos_i : both) / larger(area, Lobe<Float>::Tiny), 0.f);
     }
 };
 

@@ -102,7 +102,7 @@ template <typename Float_> struct Tabled {
 
         Float f = 0.f;
         if (parts.facets) {
-            Float rho = lobe.template reflectance<Float>(smaller(.5f * dr::norm(i + o), 1.f));
+            Float rho = lobe.reflectance(smaller(.5f * dr::norm(i + o), 1.f));
             if (slopes) {
                 Vector3f h = i + o;
                 Float lean = -dr::rcp(larger(h.z(), 1e-12f)), u = lean * dr::fmadd(h.x(), cos_wind, h.y() * sin_wind),
@@ -117,9 +117,8 @@ template <typename Float_> struct Tabled {
                 auto w = single(dr::gather<Eight>(widths, cell));
                 // Eqs. 87-89 by half angles; both components that make phi are 1 + tan^2 times as long.
                 Float tan2 = tan_i * tan_i, one = 1.f + tan2, aside = dr::fmsub(o.y(), x, o.x() * y) * inv * one,
-                      specular = dr::abs(dr::fmadd(2.f * tan_i, forward, (1.f - tan2) * o_z)), abs = dr::abs(aside),
-                      most = larger(larger(abs, specular), Small),
-                      phi = Lobe<Float>::template angle<Float>(aside, specular, abs, most, dr::rcp(most)),
+                      specular = dr::abs(dr::fmadd(2.f * tan_i, forward, (1.f - tan2) * o_z)),
+                      phi = Lobe<Float>::template angle<false>({ aside, 0.f }, { larger(specular, Small), 0.f }).hi,
                       off = dr::select(sin < 0.f, -phi, phi) - middle(w, 4, s), lower = smaller(tan_i, tan_r),
                       narrow = middle(w, 0, s) * dr::fnmadd(tan_i, lower, 1.f),
                       x2 = off * off * one * dr::fmadd(lower, lower, 1.f) * dr::rcp(narrow * narrow);
@@ -161,13 +160,11 @@ private:
     static Float visible(const Lobe<Float> &lobe, const Float &cos_i, const Float &sin_i, const Float &cos_o,
                          const Float &sin_o) {
         namespace dr = drjit;
-        Float area = cos_i * cos_o, over = 1.f;
-        if (lobe.shadowing) {
-            auto [h_i, h_o] = lobe.hidden(cos_i, lobe.sigma_shadow * sin_i, cos_o, lobe.sigma_shadow * sin_o);
-            over = h_i.over * h_o.over;
-            area = dr::fmadd(area, over, dr::fmadd(cos_o * h_i.area, h_o.over, cos_i * h_o.area * h_i.over));
-        }
-        return over * dr::rcp(larger(area, over * Grazing));
+        Float area = cos_i * cos_o;
+        if (lobe.shadowing)
+            area = dr::fmadd(cos_o, lobe.hidden(cos_i, lobe.sigma_shadow * sin_i),
+                             dr::fmadd(cos_i, lobe.hidden(cos_o, lobe.sigma_shadow * sin_o), area));
+        return dr::rcp(larger(area, Grazing));
     }
 
     /// As in the core's empirical_lobe.rs and level_water.rs.

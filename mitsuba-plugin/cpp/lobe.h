@@ -5,6 +5,8 @@
  */
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <drjit/math.h>
 #include <mitsuba/core/vector.h>
 
@@ -34,60 +36,88 @@ template <typename Float_> struct Lobe {
     using Vector3f = mitsuba::Vector<Float, 3>;
     using Point2f = mitsuba::Point<Float, 2>;
 
-    /// Tilts have digits to spare, whose rounding errors the Gaussian and the Gram-Charlier polynomial
-    /// magnify a thousandfold; not on GPUs, most of which are slow in double precision.
-    using Wide = std::conditional_t<drjit::is_cuda_v<Float>, Float, drjit::float64_array_t<Float>>;
-    using WideScalar = drjit::scalar_t<Wide>;
+    /// hi + lo: a number and what rounding took from it, itself to some digits only. Tilts need it, whose rounding errors
+    /// the Gaussian and the Gram-Charlier polynomial magnify a thousandfold. lo has no derivative; where a function is not
+    /// Fine it has no value either.
+    struct Pair {
+        Float hi, lo;
+    };
 
     /// The smallest normal number, and one whose fourth power is normal: keep quotients finite.
     static constexpr float Tiny = 1.17549435e-38f, Small = 1e-9f;
     static constexpr float Largest = 3.40282347e+38f;
+    /// 1/sqrt(2 ln 2).
+    static constexpr double InvWidth = .84932180028801904272;
+    /// log2(e)/2, and the steepest slope told from others.
+    static constexpr float HalfLog2e = .721347520f, Steepest = 1e5f;
     /// As in the core's brdf.rs and sampling.rs.
     static constexpr float SteepFloor = 1e-6f, FacetAlbedoFloor = 0.01f, Grazing = 1e-12f;
 
     /// Numbers are data, so that a change does not compile new kernels; decisions are made while tracing.
-    Wide cos_wind, sin_wind, inv_sigma_u, inv_sigma_c, ior2;
-    Float sigma_u, sigma_c, scale, c21, c03, steep_gain, sigma_shadow,
-        bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance,
+    Float cos_wind, sin_wind, cos_wind_lo, sin_wind_lo;
+    /// 1/(sigma sqrt(2 ln 2)): tilts in these units make the Gaussian a power of two.
+    Float inv_width_u, inv_width_c, inv_width_u_lo, inv_width_c_lo;
+    /// What multiplies the tilt in Eq. 78, with its square along and across the wind; as printed also without the tilt.
+    Float skew, skew_u2, skew_c2, printed, printed_c2;
+    Float sigma_u, sigma_c, scale, steep_gain, sigma_shadow,
+        bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance, excess,
         whitecap_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
+    /// Quarter turns of a wind along an axis, which tilts need not be turned by with care; 4 for another.
+    int quarters = 4;
     float ierfc[10] = {}, ierfc_end = 0;
 
     explicit Lobe(const Coefficients &c)
         : exact(c.exact), slope_measure(c.slope_measure), gram_charlier(c.gram_charlier), shadowing(c.shadowing),
           bounded(c.bounded), as_printed(c.as_printed) {
-        for (int k = 0; k < 10; ++k)
-            ierfc[k] = c.ierfc[k];
+        std::copy(std::begin(c.ierfc), std::end(c.ierfc), ierfc);
         ierfc_end = c.ierfc_end;
-        auto data = [](float x) { return drjit::opaque<Float>(x); };
-        auto wide = [](double x) { return drjit::opaque<Wide>((WideScalar) x); };
-        cos_wind = wide(c.cos_wind);
-        sin_wind = wide(c.sin_wind);
-        inv_sigma_u = wide(1. / c.sigma_u);
-        inv_sigma_c = wide(1. / c.sigma_c);
-        sigma_u = data((float) c.sigma_u);
-        sigma_c = data((float) c.sigma_c);
+        auto data = [](double x) { return drjit::opaque<Float>((float) x); };
+        auto rest = [&](double x) { return data(x - (float) x); };
+        cos_wind = data(c.cos_wind);
+        sin_wind = data(c.sin_wind);
+        cos_wind_lo = rest(c.cos_wind);
+        sin_wind_lo = rest(c.sin_wind);
+        const double along[4][2] = { { 1., 0. }, { 0., 1. }, { -1., 0. }, { 0., -1. } };
+        for (int k = 0; k < 4; ++k)
+            if (std::abs(c.cos_wind - along[k][0]) + std::abs(c.sin_wind - along[k][1]) < 1e-14)
+                quarters = k;
+        inv_width_u = data(InvWidth / c.sigma_u);
+        inv_width_c = data(InvWidth / c.sigma_c);
+        inv_width_u_lo = rest(InvWidth / c.sigma_u);
+        inv_width_c_lo = rest(InvWidth / c.sigma_c);
+        // U rises towards upwind, against the tilt.
+        constexpr double W = 1. / InvWidth, W2 = W * W;
+        double c21 = c.as_printed ? 0. : c.c21;
+        skew = data(-.5 * (c21 + c.c03) * W);
+        skew_u2 = data(c.c03 / 6. * W2 * W);
+        skew_c2 = data(.5 * c21 * W2 * W);
+        printed = data(.5 * c.c21);
+        printed_c2 = data(-.5 * c.c21 * W2);
+        sigma_u = data(c.sigma_u);
+        sigma_c = data(c.sigma_c);
         scale = data(c.scale);
-        c21 = data(c.c21);
-        c03 = data(c.c03);
         steep_gain = data(c.steep_gain);
         sigma_shadow = data(c.sigma_shadow);
         bound = data(c.bound);
         proposal_u = data(c.proposal_u);
         proposal_c = data(c.proposal_c);
-        inv_proposal_u = data(1.f / c.proposal_u);
-        inv_proposal_c = data(1.f / c.proposal_c);
-        proposal_norm = data(8.f * drjit::Pi<float> * c.proposal_u * c.proposal_c);
-        normal_reflectance = data((float) c.normal_reflectance);
-        ior2 = wide(c.ior2);
+        inv_proposal_u = data(1. / c.proposal_u);
+        inv_proposal_c = data(1. / c.proposal_c);
+        proposal_norm = data(8. * drjit::Pi<double> * c.proposal_u * c.proposal_c);
+        normal_reflectance = data(c.normal_reflectance);
+        excess = data(c.excess);
         whitecap_fraction = data(c.whitecap_fraction);
         whitecap_brdf = data(c.whitecap_brdf);
     }
 
-    DRJIT_STRUCT(Lobe, cos_wind, sin_wind, sigma_u, sigma_c, inv_sigma_u, inv_sigma_c, scale, c21, c03, steep_gain,
+    DRJIT_STRUCT(Lobe, cos_wind, sin_wind, cos_wind_lo, sin_wind_lo, inv_width_u, inv_width_c, inv_width_u_lo,
+                 inv_width_c_lo, skew, skew_u2, skew_c2, printed, printed_c2, sigma_u, sigma_c, scale, steep_gain,
                  sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm,
-                 normal_reflectance, ior2, whitecap_fraction, whitecap_brdf)
+                 normal_reflectance, excess, whitecap_fraction, whitecap_brdf)
+
+    bool oblique() const { return quarters == 4; }
 
     /// The wave normal with tangents along and across the wind; level where there are no waves.
     struct Frame {
@@ -97,8 +127,8 @@ template <typename Float_> struct Lobe {
 
     Frame frame(const Vector3f &n) const {
         namespace dr = drjit;
-        Float cos_w(cos_wind), sin_w(sin_wind), along = dr::fmadd(cos_w, n.x(), sin_w * n.y());
-        Vector3f u = dr::normalize(Vector3f(cos_w, sin_w, 0.f) - along * n);
+        Float along = dr::fmadd(cos_wind, n.x(), sin_wind * n.y());
+        Vector3f u = dr::normalize(Vector3f(cos_wind, sin_wind, 0.f) - along * n);
         return { false, u, dr::cross(n, u), n };
     }
 
@@ -110,15 +140,15 @@ template <typename Float_> struct Lobe {
         return { u, c, v.z() };
     }
 
-    /// What the two directions fix, with tilts in numbers of type T.
-    template <typename T> struct Geometry {
+    /// What the two directions fix.
+    struct Geometry {
         Float cos_i, cos_o, cos_zeta;
         /// tan^2 xi and 1/cos^2 xi.
         Float tan2_xi, inv_cos2_xi;
         /// Slopes of the half vector along and across the wind.
         Float slope_u, slope_c;
         /// Tilts in the density's measure.
-        T tilt_u, tilt_c;
+        Pair tilt_u, tilt_c;
         /// The source in the frame of the normal, and the horizontal parts of both as seen from the normal.
         Vector3f local_i;
         Point2f seen_i, seen_o;
@@ -128,13 +158,12 @@ template <typename Float_> struct Lobe {
         Float shown;
     };
 
-    template <typename T> Geometry<T> geometry(const Vector3f &i, const Vector3f &o, const Frame &frame = {}) const {
+    template <bool Fine> Geometry geometry(const Vector3f &i, const Vector3f &o, const Frame &frame = {}) const {
         namespace dr = drjit;
-        Geometry<T> g;
+        Geometry g;
         g.local_i = to_local(frame, i);
-        g.cos_zeta = smaller(.5f * dr::norm(i + o), 1.f);
         if (!frame.level) {
-            tilted(g, i, o, frame);
+            tilted<Fine>(g, i, o, frame);
             return g;
         }
         g.cos_i = i.z();
@@ -143,34 +172,28 @@ template <typename Float_> struct Lobe {
         g.seen_i = { i.x(), i.y() };
         g.seen_o = { o.x(), o.y() };
 
-        T z = larger(T(i.z()) + T(o.z()), dr::scalar_t<T>(Small));
-        auto [u, c] = wind_frame(T(i.x()) + T(o.x()), T(i.y()) + T(o.y()));
-        Float hz(z);
-        Float inv_hz = dr::rcp(hz);
-        if (slope_measure) {
-            g.tilt_u = quotient(u, z, inv_hz);
-            g.tilt_c = quotient(c, z, inv_hz);
-        } else {
-            // Both quotients of min and max by one reciprocal.
-            T abs_u = dr::abs(u), abs_c = dr::abs(c), most_u = larger(abs_u, z), most_c = larger(abs_c, z);
-            Float m_u(most_u), m_c(most_c), inv = dr::rcp(m_u * m_c);
-            g.tilt_u = angle(u, z, abs_u, most_u, Float(inv * m_c));
-            g.tilt_c = angle(c, z, abs_c, most_c, Float(inv * m_u));
-        }
-        g.slope_u = Float(u) * inv_hz;
-        g.slope_c = Float(c) * inv_hz;
-        g.tan2_xi = dr::fmadd(g.slope_u, g.slope_u, g.slope_c * g.slope_c);
+        Pair x = sum<Fine>(i.x(), o.x()), y = sum<Fine>(i.y(), o.y()), z = sum<Fine>(i.z(), o.z());
+        auto [u, c] = wind_frame<Fine>(x, y);
+        Float flat2 = dr::fmadd(x.hi, x.hi, y.hi * y.hi);
+        g.cos_zeta = smaller(.5f * dr::sqrt(dr::fmadd(z.hi, z.hi, flat2)), 1.f);
+        z.hi = larger(z.hi, Small);
+        Float inv_z = dr::rcp(z.hi);
+        g.tilt_u = slope_measure ? tangent<Fine>(u, z, inv_z) : angle<Fine>(u, z);
+        g.tilt_c = slope_measure ? tangent<Fine>(c, z, inv_z) : angle<Fine>(c, z);
+        g.slope_u = u.hi * inv_z;
+        g.slope_c = c.hi * inv_z;
+        g.tan2_xi = flat2 / dr::square(z.hi);
         g.inv_cos2_xi = 1.f + g.tan2_xi;
         return g;
     }
 
     /// f cos(theta_o), Eqs. 55-79, of some of its parts, each with its share of the surface; on a wave that of the level
     /// surface, as the core's on_wave.
-    template <typename T> Float eval(const Geometry<T> &g, Parts parts) const {
+    template <bool Fine> Float eval(const Geometry &g, Parts parts) const {
         namespace dr = drjit;
         Float f = 0.f;
         if (parts.facets) {
-            f = smaller(facets(g), Largest);
+            f = smaller(facets<Fine>(g), Largest);
             if (parts.whitecaps)
                 f = dr::fmadd(whitecap_fraction, whitecap_brdf - f, f);
             else
@@ -185,7 +208,7 @@ template <typename Float_> struct Lobe {
     }
 
     /// Density, 1/sr, with which sample() draws o.
-    template <typename T> Float pdf(const Geometry<T> &g, Parts parts) const {
+    Float pdf(const Geometry &g, Parts parts) const {
         namespace dr = drjit;
         if (!parts.facets)
             return dr::select(g.lit, g.cos_o * dr::InvPi<float>, 0.f);
@@ -201,8 +224,8 @@ template <typename Float_> struct Lobe {
               slanted = dr::fmadd(g.slope_u, p.i_u, g.slope_c * p.i_c) * p.inv_cos,
               shown = larger(1.f + slanted, Small),
               beyond = dr::fmsub(slanted, tilt_over_slope, 1.f),
-              gauss = dr::exp(-.5f * z2) * smaller(shown, 2.f),
-              tail = dr::exp(smaller(dr::fmsub(dr::square(p.inv_d), beyond, .5f * z2), 0.f)) * beyond,
+              halvings = HalfLog2e * z2, gauss = decay(halvings) * smaller(shown, 2.f),
+              tail = decay(larger(dr::fnmadd(2.f * p.halvings, beyond, halvings), 0.f)) * beyond,
               pdf = (gauss + dr::select(beyond > 0.f, tail, 0.f)) * jacobian * p.inv_cos /
                     (proposal_norm * (1.f + p.tail) * shown);
         pdf = smaller(pdf, Largest);
@@ -268,8 +291,7 @@ template <typename Float_> struct Lobe {
         h_c = dr::select(turn, -h_c, h_c);
         Vector3f h;
         if (frame.level) {
-            Float cos_w(cos_wind), sin_w(sin_wind);
-            h = Vector3f(dr::fmsub(h_u, cos_w, h_c * sin_w), dr::fmadd(h_u, sin_w, h_c * cos_w), cos_xi);
+            h = Vector3f(dr::fmsub(h_u, cos_wind, h_c * sin_wind), dr::fmadd(h_u, sin_wind, h_c * cos_wind), cos_xi);
         } else {
             h = dr::fmadd(h_u, frame.u, dr::fmadd(h_c, frame.c, cos_xi * frame.n));
         }
@@ -286,9 +308,9 @@ private:
     template <typename> friend struct Tabled;
 
     /// What the source fixes of the facets' proposal: its horizontal components, components of z that make rD,
-    /// 1/cos theta_i, 1/D, D phi(1/D).
+    /// 1/cos theta_i, 1/D, how often phi(1/D) halves phi(0), D phi(1/D).
     struct Proposal {
-        Float i_u, i_c, u, c, inv_cos, inv_d, tail;
+        Float i_u, i_c, u, c, inv_cos, inv_d, halvings, tail;
     };
 
     /// For a source in the frame of the normal.
@@ -302,7 +324,8 @@ private:
         p.c = p.i_c * proposal_c * p.inv_cos;
         Float d2 = larger(dr::fmadd(p.u, p.u, p.c * p.c), Tiny);
         p.inv_d = dr::rsqrt(d2);
-        p.tail = d2 * p.inv_d * dr::exp(-.5f * p.inv_d * p.inv_d) * 0.3989422804f;
+        p.halvings = HalfLog2e * dr::square(p.inv_d);
+        p.tail = d2 * p.inv_d * decay(p.halvings) * 0.3989422804f;
         return p;
     }
 
@@ -320,10 +343,9 @@ private:
     }
 
     /// The geometry about a wave normal: alpha_u(H) - alpha_u(N) as one angle, as in the core.
-    template <typename T>
-    void tilted(Geometry<T> &g, const Vector3f &i, const Vector3f &o, const Frame &frame) const {
+    template <bool Fine>
+    void tilted(Geometry &g, const Vector3f &i, const Vector3f &o, const Frame &frame) const {
         namespace dr = drjit;
-        using S = dr::scalar_t<T>;
         const Vector3f &n = frame.n;
         g.cos_i = g.local_i.z();
         g.cos_o = dr::dot(o, n);
@@ -333,94 +355,154 @@ private:
         g.seen_i = { dr::fmsub(i.x(), n.z(), i.z() * n.x()), dr::fmsub(i.y(), n.z(), i.z() * n.y()) };
         g.seen_o = { dr::fmsub(o.x(), n.z(), o.z() * n.x()), dr::fmsub(o.y(), n.z(), o.z() * n.y()) };
 
-        T hx = T(i.x()) + T(o.x()), hy = T(i.y()) + T(o.y()), hz = T(i.z()) + T(o.z()), nx(n.x()), ny(n.y()), nz(n.z());
-        auto [h_u, h_c] = wind_frame(hx, hy);
-        auto [n_u, n_c] = wind_frame(nx, ny);
-        auto [x_u, x_c] = wind_frame(T(hx * nz - hz * nx), T(hy * nz - hz * ny));
-        auto measure = [&](const T &sine, const T &cosine) {
-            if (slope_measure)
-                return T(dr::select(cosine > S(0), sine / larger(cosine, S(Tiny)), S(1e6)));
-            return T(dr::atan2(sine, cosine));
+        Pair x = sum<Fine>(i.x(), o.x()), y = sum<Fine>(i.y(), o.y()), z = sum<Fine>(i.z(), o.z()),
+             n_x{ n.x(), 0.f }, n_y{ n.y(), 0.f }, n_z{ n.z(), 0.f };
+        auto [h_u, h_c] = wind_frame<Fine>(x, y);
+        auto [n_u, n_c] = wind_frame<Fine>(n_x, n_y);
+        auto [x_u, x_c] = wind_frame<Fine>(products<Fine>(x, n_z, z, -n_x), products<Fine>(y, n_z, z, -n_y));
+        auto measure = [&](const Pair &sine, Pair cosine) {
+            if (!slope_measure)
+                return angle<Fine>(sine, cosine, true);
+            Mask faces = cosine.hi > 0.f;
+            cosine.hi = larger(cosine.hi, Tiny);
+            Pair t = tangent<Fine>(sine, cosine, dr::rcp(cosine.hi));
+            t.hi = dr::select(faces, t.hi, Steepest);
+            return t;
         };
-        g.tilt_u = measure(x_u, dr::fmadd(h_u, n_u, hz * nz));
-        g.tilt_c = measure(x_c, dr::fmadd(h_c, n_c, hz * nz));
+        g.tilt_u = measure(x_u, products<Fine>(h_u, n_u, z, n_z));
+        g.tilt_c = measure(x_c, products<Fine>(h_c, n_c, z, n_z));
 
         Vector3f h = to_local(frame, i + o);
         Float inv_h = dr::rcp(larger(h.z(), Small));
+        g.cos_zeta = smaller(.5f * dr::norm(i + o), 1.f);
         g.slope_u = h.x() * inv_h;
         g.slope_c = h.y() * inv_h;
         g.tan2_xi = dr::fmadd(g.slope_u, g.slope_u, g.slope_c * g.slope_c);
         g.inv_cos2_xi = 1.f + g.tan2_xi;
     }
 
+    /// -2 ln(1 - u), to 3e-8, for u in [0, 1).
     static Float radius2(const Float &u) {
         namespace dr = drjit;
-        return larger(-2.f * dr::log(larger(1.f - u, Tiny)), 0.f);
+        using Int = dr::int32_array_t<Float>;
+        // As a power of two and what is within sqrt(2) of 1.
+        Float x = larger(1.f - u, Tiny);
+        Int power = (dr::reinterpret_array<Int>(dr::detach(x)) - 0x3f3504f3) >> 23;
+        Float t = dr::fmsub(x, dr::reinterpret_array<Float>(0x3f800000 - (power << 23)), 1.f), sum = .0872235671f;
+        for (float c : { -.143668443f, .149522662f, -.165623933f, .199568331f, -.250020742f, .333341867f,
+                         -.499999881f, 1.f })
+            sum = dr::fmadd(sum, t, c);
+        return larger(-2.f * dr::fmadd(Float(power), dr::LogTwo<float>, t * sum), 0.f);
+    }
+
+    /// 2^-(n + x), to 3e-9 and rounding, for whole n >= 0 and |x| up to 1/2; 0 from 2^-127 on.
+    static Float decay(const Float &n, const Float &x) {
+        namespace dr = drjit;
+        using Int = dr::int32_array_t<Float>;
+        Float sum = .000153523171f;
+        for (float c : { -.00134001696f, .00961844996f, -.0555032939f, .240226477f, -.693147182f, 1.f })
+            sum = dr::fmadd(sum, x, c);
+        Int power(dr::fnmadd(smaller(n, 127.f), 0x1p23f, 127.f * 0x1p23f));
+        return sum * dr::reinterpret_array<Float>(power);
+    }
+
+    /// 2^-x for x >= 0.
+    static Float decay(const Float &x) {
+        Float at = smaller(x, 127.f), n = drjit::round(drjit::detach(at));
+        return decay(n, at - n);
     }
 
     /// Components along W_u and W_c (Eq. 68).
-    template <typename T> std::pair<T, T> wind_frame(const T &x, const T &y) const {
+    std::pair<Float, Float> wind_frame(const Float &x, const Float &y) const {
         namespace dr = drjit;
-        T cos(cos_wind), sin(sin_wind);
-        return { dr::fmadd(x, cos, y * sin), dr::fmsub(y, cos, x * sin) };
+        return { dr::fmadd(x, cos_wind, y * sin_wind), dr::fmsub(y, cos_wind, x * sin_wind) };
+    }
+
+    template <bool Fine> std::pair<Pair, Pair> wind_frame(const Pair &x, const Pair &y) const {
+        if constexpr (!Fine) {
+            auto [u, c] = wind_frame(x.hi, y.hi);
+            return { { u, 0.f }, { c, 0.f } };
+        } else if (oblique()) {
+            Pair cos{ cos_wind, cos_wind_lo }, sin{ sin_wind, sin_wind_lo };
+            return { settled(products<Fine>(x, cos, y, sin)), settled(products<Fine>(y, cos, -x, sin)) };
+        } else {
+            switch (quarters) {
+                case 0: return { x, y };
+                case 1: return { y, -x };
+                case 2: return { -x, -y };
+                default: return { -y, x };
+            }
+        }
     }
 
     /// f_SW, Eq. 56.
-    template <typename T> Float facets(const Geometry<T> &g) const {
+    template <bool Fine> Float facets(const Geometry &g) const {
         namespace dr = drjit;
         // p/cos^4 xi (Eqs. 72-73, 78-79).
-        using S = dr::scalar_t<T>;
-        T wide_u = -g.tilt_u * T(inv_sigma_u), wide_c = g.tilt_c * T(inv_sigma_c),
-          wide_u2 = wide_u * wide_u, wide_c2 = wide_c * wide_c,
-          exponent = larger((wide_u2 + wide_c2) * S(-.5 / dr::LogTwo<double>), S(-1e4));
-        // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
-        Float u = larger(smaller(Float(wide_u), 1e3f), -1e3f), c = larger(smaller(Float(wide_c), 1e3f), -1e3f),
-              u2 = smaller(Float(wide_u2), 1e6f), c2 = smaller(Float(wide_c2), 1e6f);
+        Pair u = scaled<Fine>(g.tilt_u, inv_width_u, inv_width_u_lo),
+             c = scaled<Fine>(g.tilt_c, inv_width_c, inv_width_c_lo);
         if (as_printed) {
-            u = dr::abs(u);
-            c = dr::abs(c);
+            // Without the sign of the tilt.
+            Mask rises = u.hi > 0.f;
+            u = { dr::select(rises, -u.hi, u.hi), dr::select(rises, -u.lo, u.lo) };
         }
-        // The power of two by its exponent's leading digits, then by the rest.
-        Float leading(exponent), p = dr::exp2(leading);
-        if constexpr (!std::is_same_v<T, Float>)
-            p = dr::fmadd(p, Float(exponent - T(leading)) * dr::LogTwo<float>, p);
-        Float gauss = p, inv_cos4 = dr::square(g.inv_cos2_xi);
-        p *= inv_cos4;
+        Float u2 = dr::square(u.hi), c2 = dr::square(c.hi), gauss;
+        if constexpr (Fine) {
+            // What is left of the squares beside whole numbers loses no digits.
+            Float n = dr::round(dr::detach(u2 + c2)), n_c = dr::round(dr::detach(c2)),
+                  lo = dr::fmadd(dr::detach(u.hi), u.lo, dr::detach(c.hi) * c.lo),
+                  x = dr::fmadd(2.f, lo, dr::fmsub(u.hi, u.hi, n - n_c) + dr::fmsub(c.hi, c.hi, n_c));
+            if (slope_measure)
+                x = larger(smaller(x, 1.f), -1.f);
+            gauss = decay(n, x);
+        } else {
+            gauss = decay(u2 + c2);
+        }
+        Float p = gauss * dr::square(g.inv_cos2_xi);
         if (!slope_measure && !as_printed)
-            p = dr::select(inv_cos4 > steep_gain, smaller(p, larger(gauss * steep_gain, SteepFloor)), p);
+            p = smaller(p, larger(gauss * steep_gain, SteepFloor));
         if (gram_charlier) {
-            Float c3 = as_printed ? Float(c2 - 1.f) : Float((c2 - 1.f) * u);
-            Float k = dr::fmadd(-.5f * c21, c3, 1.f);
-            k = dr::fmadd(c03 * (-1.f / 6.f) * u, u2 - 3.f, k);
-            k = dr::fmadd(.40f / 24.f, dr::fmadd(c2, c2 - 6.f, 3.f), k);
-            k = dr::fmadd((.12f / 4.f) * (c2 - 1.f), u2 - 1.f, k);
-            k = dr::fmadd(.23f / 24.f, dr::fmadd(u2, u2 - 6.f, 3.f), k);
+            // Rounded once each.
+            constexpr double W2 = 1. / (InvWidth * InvWidth), W4 = W2 * W2;
+            constexpr float U4 = .23 / 24. * W4, C4 = .40 / 24. * W4, Both = .12 / 4. * W4,
+                            U2 = -(.12 / 4. + .23 / 4.) * W2, C2 = -(.12 / 4. + .40 / 4.) * W2,
+                            One = 1. + (.23 + .40) / 8. + .12 / 4.;
+            Float even = dr::fmadd(c2, dr::fmadd(C4, c2, dr::fmadd(Both, u2, C2)),
+                                   dr::fmadd(u2, dr::fmadd(U4, u2, U2), One));
+            Float odd = dr::fmadd(skew_u2, u2, skew);
+            if (as_printed)
+                even += dr::fmadd(printed_c2, c2, printed);
+            else
+                odd = dr::fmadd(skew_c2, c2, odd);
+            Float k = dr::fmadd(u.hi, odd, even);
+            if constexpr (Fine) {
+                // What rounding took from the tilt, by the highest powers' derivative.
+                Float slope = dr::fmadd(4.f * U4, dr::detach(u.hi), 3.f * skew_u2);
+                k = dr::fmadd(slope * dr::detach(u2), u.lo, k);
+            }
             p *= larger(k, 0.f);
         }
 
         // Eqs. 61-67, at least what the facets themselves hide where the bound is in force.
-        Float rho = reflectance<T>(g.cos_zeta);
-        auto [area, over] = unshadowed(rho, g.cos_i, g.cos_o, [&] { return std::pair(spread(g.seen_i), spread(g.seen_o)); });
-        return p * (rho * scale * over) / larger(area, Tiny);
+        Float rho = reflectance(g.cos_zeta),
+              area = unshadowed(rho, g.cos_i, g.cos_o, [&] { return std::pair(spread(g.seen_i), spread(g.seen_o)); });
+        return p * (rho * scale) / larger(area, Tiny);
     }
 
-    /// cos theta_i cos theta_r/G as a quotient area/over; `spreads` gives the facets' along the two directions.
+    /// cos theta_i cos theta_r/G; `spreads` gives the facets' along the two directions.
     template <typename Spreads>
-    std::pair<Float, Float> unshadowed(const Float &rho, const Float &cos_i, const Float &cos_o, Spreads spreads) const {
+    Float unshadowed(const Float &rho, const Float &cos_i, const Float &cos_o, Spreads spreads) const {
         namespace dr = drjit;
-        Float area = cos_i * cos_o, over = 1.f;
-        if (shadowing) {
-            auto [h_i, h_o] = hidden(cos_i, sigma_shadow * sine(cos_i), cos_o, sigma_shadow * sine(cos_o));
-            over = h_i.over * h_o.over;
-            area = dr::fmadd(area, over, dr::fmadd(cos_o * h_i.area, h_o.over, cos_i * h_o.area * h_i.over));
-        }
+        Float area = cos_i * cos_o;
+        if (shadowing)
+            area = dr::fmadd(cos_o, hidden(cos_i, sigma_shadow * sine(cos_i)),
+                             dr::fmadd(cos_i, hidden(cos_o, sigma_shadow * sine(cos_o)), area));
         if (bounded) {
             auto [s_i, s_o] = spreads();
-            auto [h_i, h_o] = hidden(cos_i, s_i, cos_o, s_o);
-            Float v_i = cos_i + h_i.area / h_i.over, v_o = cos_o + h_o.area / h_o.over;
-            area = larger(area, over * rho / bound * larger(v_i * cos_o, v_o * cos_i));
+            Float v_i = cos_i + hidden(cos_i, s_i), v_o = cos_o + hidden(cos_o, s_o);
+            area = larger(area, rho / bound * larger(v_i * cos_o, v_o * cos_i));
         }
-        return { area, over };
+        return area;
     }
 
     static Float sine(const Float &cos) {
@@ -435,29 +517,13 @@ private:
         return dr::SqrtTwo<float> * dr::sqrt(dr::square(u * sigma_u) + dr::square(c * sigma_c));
     }
 
-    /// cos F of the shadowing function, Eq. 66, as a quotient area/over.
-    struct Hidden {
-        Float area, over;
-    };
-
-    /// The same of two directions, for spread = sigma sin, by one reciprocal.
-    std::pair<Hidden, Hidden> hidden(const Float &cos_i, Float s_i, const Float &cos_o, Float s_o) const {
+    /// cos F of the shadowing function, Eq. 66, for spread = sigma sin.
+    Float hidden(const Float &cos, const Float &spread) const {
         namespace dr = drjit;
-        s_i = larger(s_i, Small);
-        s_o = larger(s_o, Small);
-        Float inv = dr::rcp(s_i * s_o);
-        return { hidden(cos_i * s_o * inv, s_i), hidden(cos_o * s_i * inv, s_o) };
-    }
-
-    /// The same of nu = cos/spread; beyond 3.6 it is below 1e-8, and `over` must leave room for its square in
-    /// derivatives.
-    Hidden hidden(const Float &nu, const Float &spread) const {
-        namespace dr = drjit;
-        Float x = smaller(nu, 3.6f), p = ierfc[6] * x;
-        for (int k = 5; k >= 0; --k)
-            p = (p + ierfc[k]) * x;
-        Float p2 = dr::square(p + 1.f), p4 = p2 * p2;
-        return { .5f * dr::InvSqrtPi<float> * spread, p4 * p4 };
+        Float nu = smaller(cos / larger(spread, Small), ierfc_end), root = ierfc[9];
+        for (int k = 8; k >= 0; --k)
+            root = dr::fmadd(root, nu, ierfc[k]);
+        return .5f * spread * dr::square(root);
     }
 
     /// sin(x)/x and cos(x), to 5e-8, of x^2 up to a quarter turn's.
@@ -478,12 +544,12 @@ private:
         return { dr::select(w < 0.f, c, -c), -x * s };
     }
 
-    /// What atan(x)/x adds to 1, over x^2, for x^2 in [0, 1]: relative error of atan 3e-9.
+    /// What atan(x)/x adds to 1 - x^2/4, over x^2, for x^2 in [0, 1]: relative error of atan 3e-9.
     static Float atan_rest(const Float &x2) {
         namespace dr = drjit;
-        Float sum = -0.00179362171f;
-        for (float c : { 0.0109146062f, -0.0311778476f, 0.0579575963f, -0.0840345055f, 0.109521859f, -0.142642417f,
-                         0.199985483f, -0.333332991f })
+        Float sum = -.00179447105f;
+        for (float c : { .0109186051f, -.0311857592f, .0579661280f, -.0840399414f, .109523930f, -.142642871f,
+                         .199985534f, -.0833329931f })
             sum = dr::fmadd(sum, x2, c);
         return sum;
     }
@@ -493,31 +559,111 @@ private:
         namespace dr = drjit;
         Float inv_t = dr::rsqrt(larger(t2, Tiny));
         Mask steep = t2 > 1.f;
-        Float x2 = dr::select(steep, dr::square(inv_t), t2), over = dr::fmadd(x2, atan_rest(x2), 1.f);
+        Float x2 = dr::select(steep, dr::square(inv_t), t2), over = dr::fmadd(x2, atan_rest(x2) - .25f, 1.f);
         return dr::select(steep, dr::fmsub(dr::Pi<float> * .5f, inv_t, over * x2), over);
     }
 
-    /// a/b from 1/b in Float, with the digits of T.
-    template <typename T> static T quotient(const T &a, const T &b, const Float &inv_b) {
+    friend Pair operator-(const Pair &a) { return { -a.hi, -a.lo }; }
+
+    /// a + b.
+    template <bool Fine> static Pair sum(const Float &a, const Float &b) {
         namespace dr = drjit;
-        Float leading = Float(a) * inv_b;
-        if constexpr (std::is_same_v<T, Float>)
-            return leading;
-        else
-            return T(leading) + T(Float(dr::fnmadd(T(leading), b, a)) * inv_b);
+        Pair s{ a + b, 0.f };
+        if constexpr (Fine) {
+            Float a0 = dr::detach(a), s0 = dr::detach(s.hi), t = s0 - a0;
+            s.lo = (a0 - (s0 - t)) + (dr::detach(b) - t);
+        }
+        return s;
     }
 
-    /// Tilt angle atan(sine/cosine) for a positive cosine, given |sine|, the larger of it and the cosine, and
-    /// that one's reciprocal: the quotient in T, what atan adds to it in Float.
-    template <typename T>
-    static T angle(const T &sine, const T &cosine, const T &abs_sine, const T &most, const Float &inv_most) {
+    /// a + b where a is 0 or not below b; what rounding takes from it adds to lo.
+    template <bool Fine> static Float sum(const Float &a, const Float &b, Float &lo) {
         namespace dr = drjit;
-        using S = dr::scalar_t<T>;
-        T x = quotient(T(smaller(abs_sine, cosine)), most, inv_most);
-        Float t(x), t2 = t * t;
-        T angle = x + T(t * t2 * atan_rest(t2));
-        angle = dr::select(abs_sine > cosine, S(.5 * dr::Pi<double>) - angle, angle);
-        return dr::select(sine < S(0), -angle, angle);
+        Float s = a + b;
+        if constexpr (Fine)
+            lo += dr::detach(b) - (dr::detach(s) - dr::detach(a));
+        return s;
+    }
+
+    /// a b + c d.
+    template <bool Fine> static Pair products(const Pair &a, const Pair &b, const Pair &c, const Pair &d) {
+        namespace dr = drjit;
+        if constexpr (!Fine)
+            return { dr::fmadd(a.hi, b.hi, c.hi * d.hi), 0.f };
+        Float first = a.hi * b.hi, second = c.hi * d.hi;
+        Pair s = sum<Fine>(first, second);
+        Float a0 = dr::detach(a.hi), b0 = dr::detach(b.hi), c0 = dr::detach(c.hi), d0 = dr::detach(d.hi);
+        s.lo += dr::fmsub(a0, b0, dr::detach(first)) + dr::fmsub(c0, d0, dr::detach(second));
+        s.lo = dr::fmadd(a0, b.lo, dr::fmadd(b0, a.lo, dr::fmadd(c0, d.lo, dr::fmadd(d0, c.lo, s.lo))));
+        return s;
+    }
+
+    /// Two parts of which the second is small beside the first even where larger numbers cancelled.
+    static Pair settled(const Pair &a) {
+        namespace dr = drjit;
+        Float hi = a.hi + a.lo;
+        return { hi, a.lo - (dr::detach(hi) - dr::detach(a.hi)) };
+    }
+
+    /// a times a coefficient.
+    template <bool Fine> static Pair scaled(const Pair &a, const Float &b, const Float &b_lo) {
+        namespace dr = drjit;
+        Pair p{ a.hi * b, 0.f };
+        if constexpr (Fine) {
+            Float a0 = dr::detach(a.hi);
+            p.lo = dr::fmadd(a.lo, dr::detach(b), dr::fmadd(a0, b_lo, dr::fmsub(a0, dr::detach(b), dr::detach(p.hi))));
+        }
+        return p;
+    }
+
+    /// a/b, for 1/b in any number of digits.
+    template <bool Fine> static Pair quotient(const Pair &a, const Pair &b, const Float &inv_b) {
+        namespace dr = drjit;
+        Pair q{ a.hi * inv_b, 0.f };
+        if constexpr (Fine) {
+            Float q0 = dr::detach(q.hi), rest = dr::fnmadd(q0, dr::detach(b.hi), dr::detach(a.hi));
+            q.lo = dr::fnmadd(q0, b.lo, rest + a.lo) * dr::detach(inv_b);
+        }
+        return q;
+    }
+
+    /// The same where a slope may be steeper than numbers can tell.
+    template <bool Fine> static Pair tangent(const Pair &a, const Pair &b, const Float &inv_b) {
+        Pair q = quotient<Fine>(a, b, inv_b);
+        q.hi = larger(smaller(q.hi, Steepest), -Steepest);
+        return q;
+    }
+
+    /// Tilt angle of which these are in proportion to the sine and the cosine; `beyond` upright too.
+    template <bool Fine> static Pair angle(const Pair &sine, const Pair &cosine, bool beyond = false) {
+        namespace dr = drjit;
+        // atan(a/b) from an angle on an axis.
+        constexpr float Right = dr::Pi<float> * .5f;
+        constexpr double RightLo = dr::Pi<double> * .5 - Right;
+        Mask steep = dr::abs(sine.hi) > (beyond ? dr::abs(cosine.hi) : cosine.hi);
+        Pair a{ dr::select(steep, -cosine.hi, sine.hi), 0.f }, b{ dr::select(steep, sine.hi, cosine.hi), 0.f };
+        Float right = dr::copysign(Float(Right), dr::detach(sine.hi)), base = dr::select(steep, right, 0.f);
+        if (beyond) {
+            base = dr::select(!steep && cosine.hi < 0.f, 2.f * right, base);
+            b.hi = dr::select(b.hi == 0.f, Tiny, b.hi);
+        }
+        if constexpr (Fine) {
+            a.lo = dr::select(steep, -cosine.lo, sine.lo);
+            b.lo = dr::select(steep, sine.lo, cosine.lo);
+        }
+        Pair t = quotient<Fine>(a, b, dr::rcp(b.hi));
+        Float t2 = t.hi * t.hi, t3 = t.hi * t2, quarter = -.25f * t3, rest = atan_rest(t2),
+              more = dr::fmadd(t3, rest, quarter), lo = 0.f;
+        if constexpr (Fine) {
+            // d atan(t)/dt to some percent, and what rounding took from t^3 and from more.
+            auto [t0, t02, t03] = std::tuple(dr::detach(t.hi), dr::detach(t2), dr::detach(t3));
+            lo = dr::fmadd(t.lo, dr::fmadd(-.5f, t02, .957f), base * float(RightLo / Right));
+            lo = dr::fmadd(dr::fmsub(t0, t02, t03), -.3f, lo);
+            lo += dr::fmadd(t03, dr::detach(rest), dr::detach(quarter) - dr::detach(more));
+        }
+        Float hi = sum<Fine>(base, t.hi, lo);
+        hi = sum<Fine>(hi, more, lo);
+        return { hi, lo };
     }
 
     /// rho of Eq. 63.
@@ -528,16 +674,15 @@ private:
     }
 
 public:
-    /// rho of Schlick or of Fresnel's equations, to the digits of T.
-    template <typename T = Float> Float reflectance(const Float &cos_zeta) const {
+    /// rho of Schlick or of Fresnel's equations, whose near-equal numbers are multiplied out.
+    Float reflectance(const Float &cos) const {
         namespace dr = drjit;
         if (!exact)
-            return schlick(cos_zeta);
-        using S = dr::scalar_t<T>;
-        T cos(cos_zeta), n2(ior2), excess = n2 - S(1), g = dr::sqrt(dr::fmadd(cos, cos, excess)), s = cos + g,
-            p = dr::fmadd(n2, cos, g), rs = excess / larger(s * s, S(Tiny)),
-            rp = excess * dr::fmsub(n2 + S(1), cos * cos, T(S(1))) / larger(p * p, S(Tiny));
-        return Float(S(.5) * dr::fmadd(rs, rs, rp * rp));
+            return schlick(cos);
+        Float cos2 = cos * cos, g = dr::sqrt(cos2 + excess), s = cos + g, p = dr::fmadd(excess, cos, s),
+              rs = excess / larger(s * s, Tiny),
+              rp = excess * dr::fmsub(excess + 2.f, cos2, 1.f) / larger(p * p, Tiny);
+        return .5f * dr::fmadd(rs, rs, rp * rp);
     }
 
 private:

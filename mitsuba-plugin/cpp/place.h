@@ -39,15 +39,15 @@ template <typename Float_> struct FacetTable {
     /// Gives the lobe another footprint, in m.
     void set(Lobe<Float> &lobe, const Float &footprint) const {
         namespace dr = drjit;
-        using Wide = typename Lobe<Float>::Wide;
         Float place = smaller(larger((dr::log(larger(footprint, 1e-30f)) - first) * inv_step, 0.f), (float) (rows - 1));
         UInt32 node = dr::minimum(UInt32(place), rows - 2);
         Row a = dr::gather<Row>(cells, node), b = dr::gather<Row>(cells, node + 1u);
         Row row = dr::fmadd(Row(place - Float(node)), b - a, a);
         lobe.sigma_u = row[0];
         lobe.sigma_c = row[1];
-        lobe.inv_sigma_u = Wide(dr::rcp(row[0]));
-        lobe.inv_sigma_c = Wide(dr::rcp(row[1]));
+        lobe.inv_width_u = float(Lobe<Float>::InvWidth) * dr::rcp(row[0]);
+        lobe.inv_width_c = float(Lobe<Float>::InvWidth) * dr::rcp(row[1]);
+        lobe.inv_width_u_lo = lobe.inv_width_c_lo = 0.f;
         lobe.scale = scale * dr::rcp(row[0] * row[1]);
         lobe.steep_gain = row[2];
         lobe.bound = row[3];
@@ -63,7 +63,8 @@ template <typename Float_> struct FacetTable {
 /// One drawn sea at one time.
 template <typename Float_> struct Drawn {
     using Float = Float_;
-    using Wide = typename Lobe<Float>::Wide;
+    /// A place has digits to spare; not on GPUs, most of which are slow in double precision.
+    using Wide = std::conditional_t<drjit::is_cuda_v<Float>, Float, drjit::float64_array_t<Float>>;
     using UInt32 = drjit::uint32_array_t<Float>;
     using Mask = drjit::mask_t<Float>;
     using Vector3f = mitsuba::Vector<Float, 3>;

@@ -205,7 +205,7 @@ public:
     using FacetTable = prob_water::FacetTable<Float>;
     using Drawn = prob_water::Drawn<Float>;
     using Parts = prob_water::Parts;
-    using Wide = typename Lobe::Wide;
+    using Wide = typename Drawn::Wide;
 
     ProbWater(const Properties &props) : Base(props), m_options(prob_water::options()) {
         if (props.has_property("water_leaving"))
@@ -544,29 +544,29 @@ private:
     }
 
     /// f cos(theta_o) of facets and whitecaps in traced variants.
-    template <typename Geometry>
-    Float value(const Here &at, const Geometry &g, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
+    template <bool Fine>
+    Float value(const Here &at, const typename Lobe::Geometry &g, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
         if (m_tabled.incidences)
             return m_tabled.eval(at.lobe, wi, wo, parts);
-        return m_afar.rows ? m_afar.eval(at.lobe, wi, wo, parts) : at.lobe.eval(g, parts);
+        return m_afar.rows ? m_afar.eval(at.lobe, wi, wo, parts) : at.lobe.template eval<Fine>(g, parts);
     }
 
     /// f cos(theta_o) and density of facets and whitecaps, as far as wanted.
     template <bool Value, bool Pdf>
     std::pair<Float, Float> surface(const Here &at, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
         if constexpr (dr::is_jit_v<Float>) {
-            auto run = [&](auto type) {
-                auto g = at.lobe.template geometry<decltype(type)>(wi, wo, at.frame);
+            auto run = [&](auto fine) {
+                auto g = at.lobe.template geometry<fine()>(wi, wo, at.frame);
                 Float value = 0.f, pdf = 0.f;
                 if (Value)
-                    value = this->value(at, g, wi, wo, parts);
+                    value = this->template value<fine()>(at, g, wi, wo, parts);
                 if (Pdf)
                     pdf = at.lobe.pdf(g, parts);
                 return std::pair<Float, Float>(value, pdf);
             };
-            // Only Gram-Charlier's polynomial asks for digits to spare.
-            bool closed = !m_afar.rows && !m_tabled.incidences;
-            return Value && m_lobe.gram_charlier && closed ? run(Wide()) : run(Float());
+            // Gram-Charlier's polynomial asks for digits to spare, and a turn by the wind where its two deviations differ.
+            bool closed = !m_afar.rows && !m_tabled.incidences, fine = m_lobe.gram_charlier || m_lobe.oblique();
+            return Value && closed && fine ? run(std::true_type()) : run(std::false_type());
         } else {
             const prob_water::Water *sea = &water();
             uint32_t bits = parts.bits();
@@ -637,9 +637,9 @@ private:
         }
         if constexpr (dr::is_jit_v<Float>) {
             // A weight divides two Gaussians: it needs no digits to spare.
-            auto g = at.lobe.template geometry<Float>(si.wi, bs.wo, at.frame);
+            auto g = at.lobe.template geometry<false>(si.wi, bs.wo, at.frame);
             bs.pdf = at.lobe.pdf(g, on.parts);
-            value = this->value(at, g, si.wi, bs.wo, on.parts);
+            value = this->template value<false>(at, g, si.wi, bs.wo, on.parts);
         }
         active &= bs.pdf > 0.f;
         return finish(bs, spectrum(value / bs.pdf), whitecap, active);

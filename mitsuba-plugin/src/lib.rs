@@ -21,15 +21,15 @@ mod ffi {
         sigma_u: f64,
         sigma_c: f64,
         scale: f32,
-        c21: f32,
-        c03: f32,
+        c21: f64,
+        c03: f64,
         steep_gain: f32,
         sigma_shadow: f32,
         bound: f32,
         proposal_u: f32,
         proposal_c: f32,
         normal_reflectance: f64,
-        ior2: f64,
+        excess: f64,
         whitecap_fraction: f32,
         whitecap_brdf: f32,
         exact: bool,
@@ -207,14 +207,16 @@ impl Options {
         };
         let facets = (!varied.is_empty()).then(|| FacetTable::new(&water));
         let table = self.table.as_ref().map(|(name, _)| name.clone());
-        Ok(Box::new(Water { water, lobe: lobe.cast(), waves, facets, table }))
+        Ok(Box::new(Water { water, precise: lobe, lobe: lobe.cast(), waves, facets, table }))
     }
 }
 
 /// A configured sea.
 pub struct Water {
     water: prob_water::Water,
-    /// In Mitsuba's float32: the facets, or what draws directions for the sea from afar.
+    /// The facets, or what draws directions for the sea from afar: traced code's numbers come from it.
+    precise: Lobe<f64>,
+    /// The same in Mitsuba's float32, for scalar variants.
     lobe: Lobe<f32>,
     waves: Waves,
     /// Where the footprint changes from place to place.
@@ -242,24 +244,25 @@ impl Water {
     }
 
     fn coefficients(&self) -> ffi::Coefficients {
-        let (f, lobe) = (&self.lobe.facets, &self.lobe);
+        let (f, lobe) = (&self.precise.facets, &self.precise);
+        let single = |x: f64| x as f32;
         ffi::Coefficients {
             cos_wind: f.cos_wind,
             sin_wind: f.sin_wind,
-            sigma_u: f.sigma_u.into(),
-            sigma_c: f.sigma_c.into(),
-            scale: f.scale,
+            sigma_u: f.sigma_u,
+            sigma_c: f.sigma_c,
+            scale: single(f.scale),
             c21: f.c21,
             c03: f.c03,
-            steep_gain: f.steep_gain,
-            sigma_shadow: f.sigma_shadow,
-            bound: f.bound,
-            proposal_u: f.proposal_u,
-            proposal_c: f.proposal_c,
-            normal_reflectance: f.reflectance.normal.into(),
-            ior2: f64::from(f.reflectance.excess) + 1.0,
-            whitecap_fraction: lobe.whitecap_fraction,
-            whitecap_brdf: lobe.whitecap_brdf,
+            steep_gain: single(f.steep_gain),
+            sigma_shadow: single(f.sigma_shadow),
+            bound: single(f.bound),
+            proposal_u: single(f.proposal_u),
+            proposal_c: single(f.proposal_c),
+            normal_reflectance: f.reflectance.normal,
+            excess: f.reflectance.excess,
+            whitecap_fraction: single(lobe.whitecap_fraction),
+            whitecap_brdf: single(lobe.whitecap_brdf),
             exact: f.reflectance.exact,
             slope_measure: f.slope_measure,
             gram_charlier: f.gram_charlier,
