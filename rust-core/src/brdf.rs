@@ -64,9 +64,9 @@ pub struct Facets<T: Real> {
     /// `1/(2 pi sigma_u sigma_c)` times the 1/4 (or, as printed, pi/4) of Eq. 56.
     pub scale: T,
     /// Skewness c21 of Eq. 78.
-    pub c21: T,
+    pub c21: T::Fine,
     /// Skewness c03 of Eq. 78.
-    pub c03: T,
+    pub c03: T::Fine,
     /// 1/cos^4 of the tilt beyond which `exp(-xi^2/2 sigma^2)/cos^4 xi` would rise again ([`steep_gain`]).
     pub steep_gain: T,
     /// sigma of Eq. 64.
@@ -78,7 +78,7 @@ pub struct Facets<T: Real> {
     /// And across the wind.
     pub proposal_c: T,
     /// rho of Eqs. 62-63.
-    pub reflectance: Reflectance<T>,
+    pub reflectance: Reflectance<T::Fine>,
     /// The density is Gaussian in slopes, not in tilt angles.
     pub slope_measure: bool,
     /// Eq. 78 is applied.
@@ -97,9 +97,9 @@ struct Geometry<T: Real> {
     /// cos theta_i, cos theta_r (Eq. 60).
     cos: [T; 2],
     /// cos zeta (Eq. 61).
-    cos_zeta: T,
+    cos_zeta: T::Fine,
     /// 1/cos^2 xi (Eq. 71).
-    inv_cos2: T,
+    inv_cos2: T::Fine,
     /// Sine-like and cosine-like parts of the signed tilt xi_u from normal to half vector (Eqs. 69-71).
     tilt_u: [T::Wide; 2],
     /// And of xi_c.
@@ -113,9 +113,9 @@ impl<T: Real> Facets<T> {
     #[inline(always)]
     fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Option<Vec3<T>>) -> Geometry<T> {
         let (x, y, z) = (T::Wide::sum(i[0], o[0]), T::Wide::sum(i[1], o[1]), T::Wide::sum(i[2], o[2]));
-        let h = each([x, y, z], T::Wide::narrow);
+        let h = each([x, y, z], T::Wide::fine);
         let length2 = dot(h, h);
-        let cos_zeta = T::min(T::of(0.5) * length2.sqrt(), T::of(1.0));
+        let cos_zeta = Real::min(T::Fine::of(0.5) * length2.sqrt(), T::Fine::of(1.0));
         let [hu, hc] = self.wind_frame(x, y);
         let Some(n) = n else {
             return Geometry {
@@ -135,7 +135,7 @@ impl<T: Real> Facets<T> {
         Geometry {
             cos: [cosine(i, Some(n)), cosine(o, Some(n))],
             cos_zeta,
-            inv_cos2: over_square(length2, dot(h, n)),
+            inv_cos2: over_square(length2, dot(h, each(n, T::fine))),
             tilt_u: [xu, zz + hu * nu],
             tilt_c: [xc, zz + hc * nc],
             seen: [leaning(i, n), leaning(o, n)],
@@ -144,7 +144,7 @@ impl<T: Real> Facets<T> {
 
     /// Components along W_u and W_c (Eq. 68) of a horizontal vector.
     #[inline(always)]
-    fn wind_frame(&self, x: T::Wide, y: T::Wide) -> [T::Wide; 2] {
+    pub(crate) fn wind_frame(&self, x: T::Wide, y: T::Wide) -> [T::Wide; 2] {
         if self.along_x {
             return [x, y];
         }
@@ -172,7 +172,7 @@ impl<T: Real> Facets<T> {
     fn density(&self, g: &Geometry<T>) -> T {
         let u = -(self.measure(g.tilt_u) * self.inv_sigma_u);
         let c = self.measure(g.tilt_c) * self.inv_sigma_c;
-        self.scale * self.tilt_density(u, c, g.inv_cos2)
+        T::rounded(self.scale.fine() * self.tilt_density(u, c, g.inv_cos2))
     }
 
     /// `p/cos^4 xi` with the constants of Eq. 56, of facets along a unit `h` about the wave normal `n`.
@@ -196,21 +196,23 @@ impl<T: Real> Facets<T> {
 
     /// The same over its constants, for tilts U and C in standard deviations and 1/cos^2 of the whole tilt.
     #[inline(always)]
-    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, inv_cos2: T) -> T {
+    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, inv_cos2: T::Fine) -> T::Fine {
         let gauss = (T::Wide::of(-0.5) * (u * u + c * c)).exp();
         let inv_cos4 = inv_cos2 * inv_cos2;
         let mut p = gauss * inv_cos4;
         if !self.slope_measure && !self.as_printed {
-            let held = T::max(gauss * self.steep_gain, T::of(STEEP_FLOOR));
-            p = T::select(T::lt(self.steep_gain, inv_cos4), T::min(p, held), p);
+            let gain = self.steep_gain.fine();
+            let held = Real::max(gauss * gain, T::Fine::of(STEEP_FLOOR));
+            p = T::Fine::select(gain.lt(inv_cos4), Real::min(p, held), p);
         }
         if self.gram_charlier {
             // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
-            let far = T::of(1e3);
-            let u = T::max(T::min(u.narrow(), far), -far);
-            let c = T::max(T::min(c.narrow(), far), -far);
+            let (zero, far) = (T::Fine::of(0.0), T::Fine::of(1e3));
+            let u = Real::max(Real::min(u.fine(), far), -far);
+            let c = Real::max(Real::min(c.fine(), far), -far);
             let (u, c) = if self.as_printed { (u.abs(), c.abs()) } else { (u, c) };
-            p = p * T::max(gram_charlier(self.c21, self.c03, u, c, self.as_printed), T::of(0.0));
+            let correction = gram_charlier(self.c21, self.c03, u, c, self.as_printed);
+            p = p * Real::max(correction, zero);
         }
         p
     }
@@ -219,7 +221,7 @@ impl<T: Real> Facets<T> {
     #[inline(always)]
     fn visible_reflectance(&self, g: &Geometry<T>) -> T {
         let [ci, cr] = g.cos;
-        let rho = self.reflectance.eval(g.cos_zeta);
+        let rho = T::rounded(self.reflectance.eval(g.cos_zeta));
         let mut area = ci * cr;
         if self.shadowing {
             area = area
@@ -313,16 +315,16 @@ impl<S: Scalar> Lobe<S> {
                 inv_sigma_u: T::Wide::of(f.inv_sigma_u),
                 inv_sigma_c: T::Wide::of(f.inv_sigma_c),
                 scale: of(f.scale),
-                c21: of(f.c21),
-                c03: of(f.c03),
+                c21: T::Fine::of(f.c21),
+                c03: T::Fine::of(f.c03),
                 steep_gain: of(f.steep_gain),
                 sigma_shadow: of(f.sigma_shadow),
                 bound: of(f.bound),
                 proposal_u: of(f.proposal_u),
                 proposal_c: of(f.proposal_c),
                 reflectance: Reflectance {
-                    normal: of(f.reflectance.normal),
-                    excess: of(f.reflectance.excess),
+                    normal: T::Fine::of(f.reflectance.normal),
+                    excess: T::Fine::of(f.reflectance.excess),
                     exact: f.reflectance.exact,
                 },
                 slope_measure: f.slope_measure,

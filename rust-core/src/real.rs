@@ -25,6 +25,10 @@ pub trait Real:
     /// A type with digits to spare for the tilts.
     type Wide: Wide<Self>;
 
+    /// The type of the factors beside Gram-Charlier's polynomial, which passes 100, and of itself: one with digits to spare
+    /// where that costs little.
+    type Fine: Real<Fine = Self::Fine>;
+
     /// The largest finite value.
     const MAX: Self;
     /// The smallest positive normal value.
@@ -34,6 +38,10 @@ pub trait Real:
 
     /// The number nearest to `x`.
     fn of(x: f64) -> Self;
+    /// Rounded from the type of the density's factors.
+    fn rounded(fine: Self::Fine) -> Self;
+    /// In that type.
+    fn fine(self) -> Self::Fine;
     /// `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
     /// `a` where `mask` holds, else `b`.
@@ -58,7 +66,7 @@ pub trait Real:
 
 /// A number with digits to spare beyond those of `T`: for the tilts, whose rounding errors the Gaussian and the
 /// Gram-Charlier polynomial magnify a thousandfold.
-pub trait Wide<T>:
+pub trait Wide<T: Real>:
     Copy
     + std::fmt::Debug
     + Neg<Output = Self>
@@ -74,16 +82,18 @@ pub trait Wide<T>:
     fn sum(a: T, b: T) -> Self;
     /// Rounded.
     fn narrow(self) -> T;
+    /// In the type of the density's factors.
+    fn fine(self) -> T::Fine;
     /// `self/other`, or 1e6 where `other` is not positive.
     fn slope(self, other: Self) -> Self;
     /// Angle of the point (x, y) = (`other`, `self`), radians.
     fn atan2(self, other: Self) -> Self;
     /// Natural exponential of a number that is not positive.
-    fn exp(self) -> T;
+    fn exp(self) -> T::Fine;
 }
 
 /// One number: what lanes are not.
-pub trait Scalar: Real<Wide = f64> + Send + Sync {
+pub trait Scalar: Real<Wide = f64, Fine = f64> + Send + Sync {
     /// `self < other`, as a branch.
     fn below(self, other: Self) -> bool;
     /// As float64, exactly.
@@ -99,12 +109,19 @@ macro_rules! scalar {
         impl Real for $float {
             type Mask = bool;
             type Wide = f64;
+            type Fine = f64;
             const MAX: Self = $float::MAX;
             const TINY: Self = $float::MIN_POSITIVE;
             const SMALL: Self = $small;
 
             fn of(x: f64) -> Self {
                 x as Self
+            }
+            fn rounded(fine: f64) -> Self {
+                fine as Self
+            }
+            fn fine(self) -> f64 {
+                self.into()
             }
             fn lt(self, other: Self) -> bool {
                 self < other
@@ -151,14 +168,17 @@ macro_rules! scalar {
             fn narrow(self) -> $float {
                 self as $float
             }
+            fn fine(self) -> f64 {
+                self
+            }
             fn slope(self, other: Self) -> Self {
                 if other > 0.0 { self / Real::max(other, f64::MIN_POSITIVE) } else { 1e6 }
             }
             fn atan2(self, other: Self) -> Self {
                 self.atan2(other)
             }
-            fn exp(self) -> $float {
-                self.exp() as $float
+            fn exp(self) -> f64 {
+                self.exp()
             }
         }
 

@@ -223,7 +223,7 @@ impl<T: Real> Lobe<T> {
             Parts { whitecaps: false, .. } => [one, zero],
             Parts { facets: false, .. } => [zero, one],
             _ => {
-                let albedo = self.facets.reflectance.schlick(cos) + T::of(FACET_ALBEDO_FLOOR);
+                let albedo = T::rounded(self.facets.reflectance.schlick(cos.fine())) + T::of(FACET_ALBEDO_FLOOR);
                 let facets = (one - self.whitecap_fraction) * albedo;
                 let whitecaps = T::of(std::f64::consts::PI) * self.whitecap_brdf * self.whitecap_fraction;
                 {
@@ -252,8 +252,15 @@ impl<T: Real> Lobe<T> {
         let mut pdf = whitecaps * cr * T::of(std::f64::consts::FRAC_1_PI);
         if parts.facets {
             let frame = self.facets.frame(n);
-            let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
-            pdf = pdf + facets * self.facets.pdf(frame.to_local(i), frame.to_local(h));
+            // An oblique wind turns a sum of parts that nearly cancel.
+            let (x, y, z) = (T::Wide::sum(i[0], o[0]), T::Wide::sum(i[1], o[1]), T::Wide::sum(i[2], o[2]));
+            let h = if n.is_none() {
+                let [u, c] = self.facets.wind_frame(x, y);
+                [u.narrow(), c.narrow(), z.narrow()]
+            } else {
+                frame.to_local([x.narrow(), y.narrow(), z.narrow()])
+            };
+            pdf = pdf + facets * self.facets.pdf(frame.to_local(i), h);
         }
         T::select(T::lt(zero, ci) & T::lt(zero, cr), pdf, zero)
     }

@@ -113,6 +113,10 @@ impl<V: Vector> Wide<Lanes<V>> for Pair<V> {
         self.high + self.low
     }
     #[inline(always)]
+    fn fine(self) -> Lanes<V> {
+        self.narrow()
+    }
+    #[inline(always)]
     fn slope(self, other: Self) -> Self {
         let steep = other.high.lt(Lanes::TINY);
         let other = Self { high: Lanes::max(other.high, Lanes::TINY), low: other.low };

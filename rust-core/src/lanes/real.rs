@@ -111,6 +111,7 @@ impl<V: Vector> Lanes<V> {
 impl<V: Vector> Real for Lanes<V> {
     type Mask = V::Mask;
     type Wide = Pair<V>;
+    type Fine = Self;
     const MAX: Self = Self(V::MAX);
     const TINY: Self = Self(V::TINY);
     const SMALL: Self = Self(V::SMALL);
@@ -118,6 +119,14 @@ impl<V: Vector> Real for Lanes<V> {
     #[inline(always)]
     fn of(x: f64) -> Self {
         Self::splat(x as f32)
+    }
+    #[inline(always)]
+    fn rounded(fine: Self) -> Self {
+        fine
+    }
+    #[inline(always)]
+    fn fine(self) -> Self {
+        self
     }
     #[inline(always)]
     fn lt(self, other: Self) -> V::Mask {
