@@ -120,6 +120,8 @@ impl EnsembleLobe {
             return self.sampler.eval_parts(i.into(), o.into(), up(), parts);
         };
         let report = self.water.parameters.average == Average::Report;
+        // Products of smaller cosines might be 0.
+        let [i, o] = [i, o].map(|v| v.with_z(v.z.max(TINY)));
         let half = i + o;
         let cell = waves.facets.at(self.wind.to_wind(-half.truncate() / half.z));
         let mut reflected = 0.0;
