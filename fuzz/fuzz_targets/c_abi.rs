@@ -5,7 +5,7 @@
 mod abi;
 
 use abi::*;
-use libfuzzer_sys::arbitrary::{Arbitrary, Result, Unstructured};
+use libfuzzer_sys::arbitrary::{self, Arbitrary, Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use prob_water::vocabulary::ENTRIES;
 use std::ffi::{CStr, CString};

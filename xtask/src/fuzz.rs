@@ -3,7 +3,7 @@
 use crate::util;
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// One fuzzer each, with the longest input in bytes.
 const TARGETS: [(&str, &str); 4] = [("toml", "4096"), ("table", "16384"), ("c_abi", "2048"), ("csv", "4096")];
@@ -77,18 +77,32 @@ fn run(name: &str, longest: &str, seconds: u32, seeds: &Path) -> Result<()> {
     }
     println!("fuzz: {name} for {seconds} s");
     let program = util::root().join("target/fuzz").join(host()?).join("release").join(name);
-    util::run(
-        util::command(program)
-            .arg(&corpus)
-            .arg(seeds)
-            .arg(format!("-max_total_time={seconds}"))
-            .arg(format!("-artifact_prefix={}/", found.display()))
-            .arg(format!("-max_len={longest}"))
-            .args([format!("-timeout={SLOWEST}"), format!("-malloc_limit_mb={LARGEST_ALLOCATION}")])
-            .arg(format!("-rss_limit_mb={MEMORY}"))
-            .args(["-print_final_stats=1", "-verbosity=0"]),
-        &format!("fuzzing {name} (the input is in {})", util::shown(&found)),
-    )
+    let log = found.with_extension("log");
+    let mut command = util::command(program);
+    command
+        .arg(&corpus)
+        .arg(seeds)
+        .arg(format!("-max_total_time={seconds}"))
+        .arg(format!("-artifact_prefix={}/", found.display()))
+        .arg(format!("-max_len={longest}"))
+        .args([format!("-timeout={SLOWEST}"), format!("-malloc_limit_mb={LARGEST_ALLOCATION}")])
+        .arg(format!("-rss_limit_mb={MEMORY}"))
+        .args(["-print_final_stats=1", "-verbosity=0"])
+        .stderr(fs::File::create(&log).with_context(|| format!("cannot write {}", log.display()))?);
+    let result =
+        util::run(&mut command, &format!("fuzzing {name} (the input is in {})", util::shown(&found)));
+    let said = String::from_utf8_lossy(&read(&log)?).into_owned();
+    let lines: Vec<&str> = said.lines().collect();
+    if result.is_err() {
+        // The message of a panic comes early, the end is the stack.
+        let first =
+            lines.iter().position(|line| line.contains("panicked") || line.contains("ERROR")).unwrap_or(0);
+        println!("{}", lines[first..lines.len().min(first + 40)].join("\n"));
+    }
+    let told = |name: &str| lines.iter().find_map(|line| line.strip_prefix(name)).unwrap_or_default().trim();
+    let (runs, added) = (told("stat::number_of_executed_units:"), told("stat::new_units_added:"));
+    println!("fuzz: {name}: {runs} inputs, {added} of them new to the corpus");
+    result
 }
 
 /// Seeds of the project's own examples: scenarios, scene files, tables and rows.
@@ -117,7 +131,7 @@ fn lay_out(seeds: &Path) -> Result<()> {
     table_seed(&seeds.join("table"))
 }
 
-fn read(path: &PathBuf) -> Result<Vec<u8>> {
+fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).with_context(|| format!("cannot read {}", path.display()))
 }
 
