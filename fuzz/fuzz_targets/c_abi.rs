@@ -96,7 +96,18 @@ fn answered(status: i32) -> i32 {
 
 /// The words that values are mostly made of.
 const WORDS: [&str; 12] = [
-    "inf", "NaN", "true", "false", "exact", "slope", "as_printed", "empirical", "fresh", "slopes", "1e-3", "-0",
+    "inf",
+    "NaN",
+    "true",
+    "false",
+    "exact",
+    "slope",
+    "as_printed",
+    "empirical",
+    "fresh",
+    "slopes",
+    "1e-3",
+    "-0",
 ];
 
 fuzz_target!(|calls: Vec<Call>| {
@@ -174,12 +185,18 @@ unsafe fn run(call: &Call, options: &mut [*mut Options; HELD], seas: &mut [*mut 
             Call::Pdf(which, rows) => {
                 let mut pdf = vec![UNTOUCHED; rows.count];
                 let [i, o, n] = [0, 1, 2].map(|k| rows.input(k));
-                written(answered(prob_water_pdf(seas[at(which)], rows.count, i, o, n, pdf.as_mut_ptr())), &pdf);
+                written(
+                    answered(prob_water_pdf(seas[at(which)], rows.count, i, o, n, pdf.as_mut_ptr())),
+                    &pdf,
+                );
             }
             Call::Sample(which, rows) => {
                 let uniforms: Vec<f64> = rows.vectors[1].iter().map(|x| x.abs()).collect();
-                let (mut o, mut pdf, mut f) =
-                    (vec![UNTOUCHED; 3 * rows.count], vec![UNTOUCHED; rows.count], vec![UNTOUCHED; rows.count]);
+                let (mut o, mut pdf, mut f) = (
+                    vec![UNTOUCHED; 3 * rows.count],
+                    vec![UNTOUCHED; rows.count],
+                    vec![UNTOUCHED; rows.count],
+                );
                 let (i, u) = (rows.input(0), if rows.nulls & 2 != 0 { null() } else { uniforms.as_ptr() });
                 let (o_out, pdf_out, f_out) = (o.as_mut_ptr(), pdf.as_mut_ptr(), f.as_mut_ptr());
                 let status =
@@ -203,5 +220,6 @@ unsafe fn run(call: &Call, options: &mut [*mut Options; HELD], seas: &mut [*mut 
 
 /// A C string of any bytes but zeros.
 fn text(bytes: &[u8]) -> CString {
-    CString::new(bytes.iter().copied().filter(|byte| *byte != 0).collect::<Vec<_>>()).expect("no zeros are left")
+    CString::new(bytes.iter().copied().filter(|byte| *byte != 0).collect::<Vec<_>>())
+        .expect("no zeros are left")
 }
