@@ -66,15 +66,19 @@ fn plugin() -> Result<()> {
         println!("sanitize: {compiler} has no libasan; the plugin with it is left out");
         return Ok(());
     }
-    let library =
-        util::output(util::command(&compiler).arg("-print-file-name=libasan.so"), "asking for libasan")?;
+    // The second one so that the first finds what it wraps of C++'s exceptions.
+    let libraries = ["libasan.so", "libstdc++.so.6"].map(|name| {
+        util::output(util::command(&compiler).arg(format!("-print-file-name={name}")), "asking for libraries")
+    });
+    let [sanitizer, exceptions] = libraries;
+    let preloaded = format!("{} {}", sanitizer?, exceptions?);
     let out = util::root().join("target/mitsuba-sanitized");
     build::build_with(&out, &FLAGS)?;
     util::run(
         util::command(setup::python())
             .arg("validation/sanitized.py")
             .env("PROB_WATER_PLUGINS", &out)
-            .env("LD_PRELOAD", library)
+            .env("LD_PRELOAD", preloaded)
             // Python and Mitsuba keep what they allocate.
             .env("ASAN_OPTIONS", "detect_leaks=0:halt_on_error=1:exitcode=99:handle_segv=0")
             .env("PYTHONDONTWRITEBYTECODE", "1")
