@@ -103,7 +103,10 @@ fn compare(
             continue;
         }
         let size = size(row);
-        if !RANGE.contains(&size) {
+        // With an index of 1 next to nothing is reflected: no number of float32 has its digits.
+        let zeta = [0, 1, 2].map(|k| i[k] + o[k]);
+        let rho = water.lobe.facets.reflectance.eval((0.5 * dot(zeta, zeta).sqrt()).min(1.0));
+        if !RANGE.contains(&size) || rho < RANGE.start {
             continue;
         }
         let level = *n == [0.0, 0.0, 1.0];
