@@ -6,6 +6,7 @@ pub mod settings;
 mod tables;
 
 use crate::progress::Progress;
+use crate::toml_file::Document;
 use crate::{Outcome, empirical_table, parameters, table, threads};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use file::{Method, Scenario};
@@ -13,7 +14,7 @@ use prob_water::exact::Exact;
 use prob_water::{EmpiricalLobe, Engagement, Ensemble, Estimate, Statistics, Surface};
 use rayon::prelude::*;
 use std::num::NonZeroU32;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use tables::Tables;
 
 /// The subcommand's flags.
@@ -47,6 +48,11 @@ pub fn run(matches: &ArgMatches) -> Outcome {
         Method::Exact(exact) => integrals(&scenario, exact, tables),
         Method::Table(lobe) => by_table(&scenario, lobe, tables),
     }
+}
+
+/// Reads the text of a scenario, without working it out.
+pub fn check(document: &Document, path: &Path) -> Result<(), String> {
+    Scenario::of(document, path, &[], None).map(|_| ())
 }
 
 /// As many engagements at a time as fit into memory.

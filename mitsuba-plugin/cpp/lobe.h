@@ -61,7 +61,7 @@ template <typename Float_> struct Lobe {
     Float skew, skew_u2, skew_c2, printed, printed_c2;
     Float sigma_u, sigma_c, scale, steep_gain, sigma_shadow,
         bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm, normal_reflectance, excess,
-        whitecap_fraction, whitecap_brdf;
+        whitecap_fraction, smooth_fraction, whitecap_brdf;
     bool exact = false, slope_measure = false, gram_charlier = false, shadowing = false, bounded = false,
          as_printed = false;
     /// Quarter turns of a wind along an axis, which tilts need not be turned by with care; 4 for another.
@@ -109,15 +109,22 @@ template <typename Float_> struct Lobe {
         normal_reflectance = data(c.normal_reflectance);
         excess = data(c.excess);
         whitecap_fraction = data(c.whitecap_fraction);
+        smooth_fraction = data(c.smooth_fraction);
         whitecap_brdf = data(c.whitecap_brdf);
     }
 
     DRJIT_STRUCT(Lobe, cos_wind, sin_wind, cos_wind_lo, sin_wind_lo, inv_width_u, inv_width_c, inv_width_u_lo,
                  inv_width_c_lo, skew, skew_u2, skew_c2, printed, printed_c2, sigma_u, sigma_c, scale, steep_gain,
                  sigma_shadow, bound, proposal_u, proposal_c, inv_proposal_u, inv_proposal_c, proposal_norm,
-                 normal_reflectance, excess, whitecap_fraction, whitecap_brdf)
+                 normal_reflectance, excess, whitecap_fraction, smooth_fraction, whitecap_brdf)
 
     bool oblique() const { return quarters == 4; }
+
+    /// The share of whitecaps at a place.
+    void set_whitecaps(const Float &fraction) {
+        whitecap_fraction = fraction;
+        smooth_fraction = 1.f - fraction;
+    }
 
     /// The wave normal with tangents along and across the wind; level where there are no waves.
     struct Frame {
@@ -195,9 +202,9 @@ template <typename Float_> struct Lobe {
         if (parts.facets) {
             f = smaller(facets<Fine>(g), Largest);
             if (parts.whitecaps)
-                f = dr::fmadd(whitecap_fraction, whitecap_brdf - f, f);
+                f = dr::fmadd(whitecap_fraction, whitecap_brdf, smooth_fraction * f);
             else
-                f -= whitecap_fraction * f;
+                f *= smooth_fraction;
         } else if (parts.whitecaps) {
             f = whitecap_fraction * whitecap_brdf;
         }
@@ -688,7 +695,7 @@ public:
 private:
     /// Albedos, roughly, by which a lobe is chosen: of the facets and of the whitecaps.
     std::pair<Float, Float> albedos(const Float &cos) const {
-        Float facets = (1.f - whitecap_fraction) * (schlick(cos) + FacetAlbedoFloor);
+        Float facets = smooth_fraction * (schlick(cos) + FacetAlbedoFloor);
         return { facets, drjit::Pi<float> * whitecap_brdf * whitecap_fraction };
     }
 };

@@ -511,10 +511,10 @@ private:
                 auto [n, whitecap] = m_drawn.at(along(si.sh_frame.s), along(si.sh_frame.t), varies() ? &d : nullptr);
                 at.frame = at.lobe.frame(n);
                 if (m_whitecaps)
-                    at.lobe.whitecap_fraction = whitecap;
+                    at.lobe.set_whitecaps(whitecap);
             }
             if (m_whitecap_texture)
-                at.lobe.whitecap_fraction = within_one(m_whitecap_texture->eval_1(si, active));
+                at.lobe.set_whitecaps(within_one(m_whitecap_texture->eval_1(si, active)));
         } else if (m_places) {
             constexpr float None = std::numeric_limits<float>::quiet_NaN();
             ProbWaterPlace place{ { 0., 0. }, None, None };

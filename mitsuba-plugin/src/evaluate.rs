@@ -46,10 +46,10 @@ impl Water {
         if let Waves::Drawn(sea) = &self.waves {
             let spot = sea.spot(place.place, footprint);
             n = Some(spot.normal.map(|x| x as f32));
-            lobe.whitecap_fraction = spot.whitecap as f32;
+            lobe = lobe.with_whitecaps(spot.whitecap as f32);
         }
         if !place.whitecaps.is_nan() {
-            lobe.whitecap_fraction = place.whitecaps.clamp(0.0, 1.0);
+            lobe = lobe.with_whitecaps(place.whitecaps.clamp(0.0, 1.0));
         }
         Spot { lobe, n }
     }

@@ -31,6 +31,7 @@ mod ffi {
         normal_reflectance: f64,
         excess: f64,
         whitecap_fraction: f32,
+        smooth_fraction: f32,
         whitecap_brdf: f32,
         exact: bool,
         slope_measure: bool,
@@ -189,7 +190,7 @@ impl Options {
             Surface::Flat => Waves::Level,
             Surface::Instance => {
                 // Every place has its own.
-                lobe.whitecap_fraction = 0.0;
+                lobe = lobe.with_whitecaps(0.0);
                 let sea =
                     if varied.is_empty() { InstanceLobe::new(&water) } else { InstanceLobe::fading(&water) };
                 Waves::Drawn(sea)
@@ -262,6 +263,7 @@ impl Water {
             normal_reflectance: f.reflectance.normal,
             excess: f.reflectance.excess,
             whitecap_fraction: single(lobe.whitecap_fraction),
+            smooth_fraction: single(lobe.smooth_fraction),
             whitecap_brdf: single(lobe.whitecap_brdf),
             exact: f.reflectance.exact,
             slope_measure: f.slope_measure,

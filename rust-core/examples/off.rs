@@ -11,7 +11,7 @@ use std::hint::black_box;
 macro_rules! without {
     ($lobe:expr, whitecaps) => {{
         let mut lobe = $lobe;
-        lobe.whitecap_fraction = 0.0;
+        lobe = lobe.with_whitecaps(0.0);
         lobe
     }};
     ($lobe:expr, $switch:ident) => {{

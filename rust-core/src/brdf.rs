@@ -34,7 +34,7 @@ fn over_square<T: Real>(x: T, cos: T) -> T {
 /// The sine of a cosine's angle.
 #[inline(always)]
 fn sine<T: Real>(cos: T) -> T {
-    T::max(T::of(1.0) - cos * cos, T::of(0.0)).sqrt()
+    T::max((-cos).mul_add(cos, T::of(1.0)), T::of(0.0)).sqrt()
 }
 
 /// The horizontal part of `v` seen from `n`.
@@ -121,7 +121,7 @@ impl<T: Real> Facets<T> {
             return Geometry {
                 cos: [i[2], o[2]],
                 cos_zeta,
-                inv_cos2: over_square(length2, h[2]),
+                inv_cos2: T::Fine::of(1.0) + over_square(h[0].mul_add(h[0], h[1] * h[1]), h[2]),
                 tilt_u: [hu, z],
                 tilt_c: [hc, z],
                 seen: [[i[0], i[1]], [o[0], o[1]]],
@@ -132,10 +132,12 @@ impl<T: Real> Facets<T> {
         let [nu, nc] = self.wind_frame(nx, ny);
         let [xu, xc] = self.wind_frame(x * nz - z * nx, y * nz - z * ny);
         let zz = z * nz;
+        let cos = [cosine(i, Some(n)), cosine(o, Some(n))];
         Geometry {
-            cos: [cosine(i, Some(n)), cosine(o, Some(n))],
+            cos,
             cos_zeta,
-            inv_cos2: over_square(length2, dot(h, each(n, T::fine))),
+            // N.V of the sum of both directions, without cancellation where both are small.
+            inv_cos2: over_square(length2, cos[0].fine() + cos[1].fine()),
             tilt_u: [xu, zz + hu * nu],
             tilt_c: [xc, zz + hc * nc],
             seen: [leaning(i, n), leaning(o, n)],
@@ -222,11 +224,12 @@ impl<T: Real> Facets<T> {
     fn visible_reflectance(&self, g: &Geometry<T>) -> T {
         let [ci, cr] = g.cos;
         let rho = T::rounded(self.reflectance.eval(g.cos_zeta));
+        // A source on the horizon would have f, and the weight of a draw, without bound.
+        let (ci, cr) = (T::max(ci, T::of(GRAZING)), T::max(cr, T::of(GRAZING)));
         let mut area = ci * cr;
         if self.shadowing {
-            area = area
-                + cr * hidden(ci, self.sigma_shadow * sine(ci))
-                + ci * hidden(cr, self.sigma_shadow * sine(cr));
+            area = cr.mul_add(hidden(ci, self.sigma_shadow * sine(ci)), area);
+            area = ci.mul_add(hidden(cr, self.sigma_shadow * sine(cr)), area);
         }
         let value = rho / T::max(area, T::TINY);
         if self.bounded { T::min(value, self.visible_bound(g)) } else { value }
@@ -273,6 +276,8 @@ pub struct Lobe<T: Real> {
     pub facets: Facets<T>,
     /// F_WC, fraction of the water under whitecaps (Eq. 51); 0 where they are switched off.
     pub whitecap_fraction: T,
+    /// 1 - F_WC, whose digits would be lost in a storm.
+    pub smooth_fraction: T,
     /// f_WC, BRDF of a whitecap (Eq. 55), 1/sr.
     pub whitecap_brdf: T,
 }
@@ -290,7 +295,7 @@ impl<T: Real> Lobe<T> {
         let (zero, n) = (T::of(0.0), n.into());
         let mut f = zero;
         if parts.facets {
-            f = (T::of(1.0) - self.whitecap_fraction) * self.facets.eval(i, o, n);
+            f = self.smooth_fraction * self.facets.eval(i, o, n);
         }
         if parts.whitecaps {
             let lit = T::lt(zero, cosine(i, n)) & T::lt(zero, cosine(o, n));
@@ -301,6 +306,11 @@ impl<T: Real> Lobe<T> {
 }
 
 impl<S: Scalar> Lobe<S> {
+    /// The same facets under other whitecaps.
+    pub fn with_whitecaps(self, fraction: S) -> Self {
+        Self { whitecap_fraction: fraction, smooth_fraction: S::of(1.0) - fraction, ..self }
+    }
+
     /// The same coefficients as another number type.
     pub fn cast<T: Real>(&self) -> Lobe<T> {
         let f = &self.facets;
@@ -334,6 +344,7 @@ impl<S: Scalar> Lobe<S> {
                 as_printed: f.as_printed,
             },
             whitecap_fraction: of(self.whitecap_fraction),
+            smooth_fraction: of(self.smooth_fraction),
             whitecap_brdf: of(self.whitecap_brdf),
         }
     }
@@ -385,6 +396,9 @@ impl Facets<f64> {
         })
     }
 }
+
+/// Smallest cosine to the source that is told from 0: 1e-10 degrees above the horizon.
+pub(crate) const GRAZING: f64 = 1e-12;
 
 /// What steep facets may count beside level ones, whatever their density.
 pub const STEEP_FLOOR: f64 = 1e-6;

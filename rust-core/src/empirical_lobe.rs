@@ -54,6 +54,10 @@ const DENSITIES: usize = 257;
 const GRAZING: f64 = 1e-6;
 const LOWEST: f64 = 2e-3;
 
+/// Logarithm of the largest mean square over the squared mean: far from the mirror in a light wind Gaussian slopes give
+/// more than a number holds.
+const LARGEST_SQUARE: f64 = 500.0;
+
 /// f and what is known of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -171,7 +175,7 @@ impl EmpiricalLobe {
         let in_plane: Vec<[f32; 3]> = rows.into_iter().flat_map(|(cells, _)| cells).collect();
         let mut sampler = spreads.sampler(water);
         // As many whitecaps as a source overhead meets.
-        sampler.whitecap_fraction = f64::from(in_plane[THETAS / 2][1]);
+        sampler = sampler.with_whitecaps(f64::from(in_plane[THETAS / 2][1]));
         Ok(Self {
             sampler,
             across: water.parameters.across,
@@ -304,7 +308,7 @@ impl EmpiricalLobe {
         let (density, visible) = self.level(i, o, place);
         let seen = if self.across == Across::Report { place.view() } else { o };
         let facets = visible * (ratio + density).exp();
-        let square = (square + self.spreads.ln_square(i, seen)).max(0.0).exp();
+        let square = (square + self.spreads.ln_square(i, seen)).clamp(0.0, LARGEST_SQUARE).exp();
         let moments = Moments { facets, facets2: facets * facets * square, whitecaps };
         (moments, self.reflectance(i, o))
     }

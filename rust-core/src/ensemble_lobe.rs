@@ -94,12 +94,12 @@ impl EnsembleLobe {
         let slopes = Component::new(&waves).map(|component| Slopes::new(&component, water)).transpose()?;
         let waves = slopes.map(|slopes| Waves::new(slopes, water, wind));
         let mut sampler = water.lobe;
-        sampler.whitecap_fraction = water.whitecap_probability(0.0);
+        sampler = sampler.with_whitecaps(water.whitecap_probability(0.0));
         if let Some(waves) = &waves {
             let f = &mut sampler.facets;
             f.proposal_u = f.proposal_u.hypot(waves.slopes.sigma.x);
             f.proposal_c = f.proposal_c.hypot(waves.slopes.sigma.y);
-            sampler.whitecap_fraction = foam(&waves.slopes, Average::Power).0;
+            sampler = sampler.with_whitecaps(foam(&waves.slopes, Average::Power).0);
         }
         Ok(Self { water: *water, sampler, wind, waves })
     }
@@ -120,6 +120,8 @@ impl EnsembleLobe {
             return self.sampler.eval_parts(i.into(), o.into(), None, parts);
         };
         let report = self.water.parameters.average == Average::Report;
+        // Products of smaller cosines might be 0.
+        let [i, o] = [i, o].map(|v| v.with_z(v.z.max(TINY)));
         let half = i + o;
         let cell = waves.facets.at(self.wind.to_wind(-half.truncate() / half.z));
         let mut reflected = 0.0;

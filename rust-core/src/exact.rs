@@ -337,7 +337,7 @@ impl Distribution {
     fn over(&self, limit: f64) -> f64 {
         let next = self.steps.partition_point(|(value, _)| *value <= limit);
         let up_to = match (next.checked_sub(1).map(|i| self.steps[i]), self.steps.get(next)) {
-            (None, _) => return self.total,
+            (None, _) => return self.total.min(1.0),
             (Some((a, p)), Some((b, q))) => p + (q - p) * (limit - a) / (b - a),
             (Some(_), None) => 1.0,
         };

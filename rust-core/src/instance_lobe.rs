@@ -65,7 +65,7 @@ impl InstanceLobe {
     /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2]) -> f64 {
         let spot = self.spot(place, None);
-        let lobe = Lobe { whitecap_fraction: spot.whitecap, ..self.water.lobe };
+        let lobe = self.water.lobe.with_whitecaps(spot.whitecap);
         lobe.on_wave(i, o, spot.normal, Parts::ALL)
     }
 }

@@ -78,19 +78,19 @@ impl<T: Real> Reflectance<T> {
     pub fn schlick(&self, cos: T) -> T {
         let m = T::max(T::of(1.0) - cos, T::of(0.0));
         let m2 = m * m;
-        self.normal + (T::of(1.0) - self.normal) * m2 * m2 * m
+        (m2 * m2 * m).mul_add(T::of(1.0) - self.normal, self.normal)
     }
 
     /// Fresnel's equations; the differences of near-equal numbers are multiplied out.
     #[inline(always)]
     fn exact(&self, cos: T) -> T {
         let (one, excess) = (T::of(1.0), self.excess);
-        let g = T::sqrt(excess + cos * cos);
+        let g = T::sqrt(cos.mul_add(cos, excess));
         let s = cos + g;
-        let p = (excess + one) * cos + g;
+        let p = excess.mul_add(cos, s);
         let rs = excess / T::max(s * s, T::TINY);
-        let rp = excess * ((excess + one + one) * cos * cos - one) / T::max(p * p, T::TINY);
-        T::of(0.5) * (rs * rs + rp * rp)
+        let rp = excess * (excess + one + one).mul_add(cos * cos, -one) / T::max(p * p, T::TINY);
+        T::of(0.5) * rs.mul_add(rs, rp * rp)
     }
 }
 

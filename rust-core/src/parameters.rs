@@ -245,9 +245,11 @@ impl Parameters {
             whitecap_fraction,
             lobe: Lobe {
                 facets: self.facets(&wind, ior, variances),
-                whitecap_fraction: if self.whitecaps { whitecap_fraction } else { 0.0 },
+                whitecap_fraction: 0.0,
+                smooth_fraction: 1.0,
                 whitecap_brdf: whitecap::brdf(self.wavelength),
-            },
+            }
+            .with_whitecaps(if self.whitecaps { whitecap_fraction } else { 0.0 }),
         })
     }
 

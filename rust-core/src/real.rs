@@ -175,7 +175,8 @@ macro_rules! scalar {
                 if other > 0.0 { self / Real::max(other, f64::MIN_POSITIVE) } else { 1e6 }
             }
             fn atan2(self, other: Self) -> Self {
-                self.atan2(other)
+                // Nothing over a zero of whatever sign is no tilt, not half a turn.
+                self.atan2(other + 0.0)
             }
             fn exp(self) -> f64 {
                 self.exp()
@@ -206,9 +207,9 @@ scalar!(f64, 1e-70);
 /// `x + ierfc(x)/2`, which is what the shadowing function passes on: 1.6e-7, and 4e-7 evaluated in float32. Neither an
 /// exponential nor a quotient is needed. The Dr.Jit twin reads the same numbers.
 pub const IERFC: [f32; 10] = [
-    0.751_125_57,
+    0.751_125_6,
     -0.665_670_75,
-    0.080_643_877,
+    0.080_643_88,
     0.071_178_935,
     -0.003_090_579_8,
     -0.011_186_989,
@@ -265,7 +266,7 @@ pub(crate) fn each<T: Copy, U>(v: [T; 3], f: impl Fn(T) -> U) -> [U; 3] {
 /// Scalar product.
 #[inline(always)]
 pub fn dot<T: Real>(a: Vec3<T>, b: Vec3<T>) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
 }
 
 #[cfg(test)]

@@ -14,13 +14,15 @@
 //! is at most 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
 use crate::{Real, Scalar};
-use crate::brdf::{Facets, Lobe, Parts, cosine};
+use crate::brdf::{Facets, GRAZING, Lobe, Parts, cosine};
 use crate::real::{Vec3, Wide, dot};
 
 /// Keeps the facets' share positive where they hardly reflect.
 const FACET_ALBEDO_FLOOR: f64 = 0.01;
-/// Smallest cosine to the source the proposal distinguishes.
-const GRAZING: f64 = 1e-12;
+/// Smallest vertical component of a normal that is told from 0.
+const LYING: f64 = 1e-4;
+/// Densities up to which a draw is lost: rounding alone makes it, and its weight could be infinite.
+const LOST: f64 = 1e-37;
 /// Smallest tilt that has an azimuth.
 const LEVEL: f64 = 1e-18;
 
@@ -81,11 +83,12 @@ impl<T: Real> Facets<T> {
     fn frame(&self, n: Option<Vec3<T>>) -> Frame<T> {
         let (cw, sw) = (self.cos_wind.narrow(), self.sin_wind.narrow());
         let Some(n) = n else { return Frame::Level([cw, sw]) };
-        let along = cw * n[0] + sw * n[1];
-        let u = [cw - along * n[0], sw - along * n[1], -along * n[2]];
-        let length = dot(u, u).sqrt();
-        let u = [u[0] / length, u[1] / length, u[2] / length];
-        let c = [n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]];
+        // N x W and back: no digits are lost where the normal leans far into the wind, nor all where it lies in it.
+        let rise = T::max(n[2], T::of(LYING));
+        let c = [-rise * sw, rise * cw, n[0] * sw - n[1] * cw];
+        let length = T::max(dot(c, c).sqrt(), T::TINY);
+        let c = [c[0] / length, c[1] / length, c[2] / length];
+        let u = [c[1] * n[2] - c[2] * n[1], c[2] * n[0] - c[0] * n[2], c[0] * n[1] - c[1] * n[0]];
         Frame::Wave([u, c, n])
     }
 
@@ -224,7 +227,7 @@ impl<T: Real> Lobe<T> {
             Parts { facets: false, .. } => [zero, one],
             _ => {
                 let albedo = T::rounded(self.facets.reflectance.schlick(cos.fine())) + T::of(FACET_ALBEDO_FLOOR);
-                let facets = (one - self.whitecap_fraction) * albedo;
+                let facets = self.smooth_fraction * albedo;
                 let whitecaps = T::of(std::f64::consts::PI) * self.whitecap_brdf * self.whitecap_fraction;
                 {
                     let both = T::max(facets + whitecaps, T::TINY);
@@ -295,7 +298,7 @@ impl<T: Scalar> Lobe<T> {
             [c * h[0] - i[0], c * h[1] - i[1], c * h[2] - i[2]]
         };
         let pdf = self.pdf_parts(i, direction, n, parts);
-        if !zero.below(pdf) {
+        if !T::of(LOST).below(pdf) {
             return Sample { direction: [zero; 3], pdf: zero, f: zero, whitecap };
         }
         Sample { direction, pdf, f: self.eval_parts(i, direction, n, parts), whitecap }

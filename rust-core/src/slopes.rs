@@ -48,10 +48,11 @@ pub fn gram_charlier<T: Real>(c21: T, c03: T, u: T, c: T, printed: bool) -> T {
     let (one, three, six) = (T::of(1.0), T::of(3.0), T::of(6.0));
     let (u2, c2) = (u * u, c * c);
     let skew_c = (c2 - one) * if printed { one } else { u };
-    one - T::of(0.5) * c21 * skew_c - T::of(1.0 / 6.0) * c03 * u * (u2 - three)
-        + T::of(C40 / 24.0) * (c2 * (c2 - six) + three)
-        + T::of(C22 / 4.0) * (c2 - one) * (u2 - one)
-        + T::of(C04 / 24.0) * (u2 * (u2 - six) + three)
+    let mut p = skew_c.mul_add(T::of(-0.5) * c21, one);
+    p = (u * (u2 - three)).mul_add(T::of(-1.0 / 6.0) * c03, p);
+    p = c2.mul_add(c2 - six, three).mul_add(T::of(C40 / 24.0), p);
+    p = ((c2 - one) * (u2 - one)).mul_add(T::of(C22 / 4.0), p);
+    u2.mul_add(u2 - six, three).mul_add(T::of(C04 / 24.0), p)
 }
 
 #[cfg(test)]

@@ -472,3 +472,22 @@ fn tables_of_ones_own() {
     }
     assert!(Table::read(&table.to_bytes(), "").unwrap() == table);
 }
+
+/// Far from the mirror in a light wind, where the mean square of Gaussian slopes is beyond any number.
+#[test]
+fn uncertainties_are_finite_far_from_the_mirror() {
+    for across in [Across::Report, Across::Slopes] {
+        let water = with(&sea(2.0, 0.0, 50), |p| (p.ior, p.footprint, p.across) = (None, 0.02, across));
+        let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
+        for source in 0..36 {
+            for observer in 0..36 {
+                let [i, o] = [source, observer].map(|azimuth| {
+                    let (sin, cos) = (f64::from(azimuth) * 10.0).to_radians().sin_cos();
+                    [0.9999 * cos, 0.9999 * sin, 0.014]
+                });
+                let estimate = lobe.estimate(i, o);
+                assert!(estimate.mean.is_finite() && estimate.std.is_finite(), "{i:?} {o:?}: {estimate:?}");
+            }
+        }
+    }
+}

@@ -245,6 +245,21 @@ fn reciprocal_finite_and_black_from_below() {
     }
 }
 
+/// Cosines whose product is no number of float64 any more.
+#[test]
+fn finite_on_the_horizon() {
+    for average in [Average::Power, Average::Report] {
+        let lobe = EnsembleLobe::new(&sea(8.0, |p| p.average = average)).unwrap();
+        for low in [5e-324, 1e-310, 1e-45, 1e-12] {
+            for o in [[1.0, 0.0, low], [-1.0, 0.0, low], [0.6, 0.0, 0.8], [0.0, 0.0, 1.0]] {
+                for f in [lobe.eval([-1.0, 0.0, low], o), lobe.eval(o, [-1.0, 0.0, low])] {
+                    assert!(f.is_finite() && f >= 0.0, "{low} {o:?}: {f}");
+                }
+            }
+        }
+    }
+}
+
 /// What is reflected of the light that comes in: at most 1 at these incidences (the report's mean in a light wind passes 1
 /// within a degree of the horizon), and about the reflectance of a level sea
 /// at normal incidence.

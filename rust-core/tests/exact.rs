@@ -338,6 +338,21 @@ fn distributions() {
 }
 
 /// What would need tables without end is refused, in no time.
+/// A share is at most 1, also where sums of probabilities are more by rounding.
+#[test]
+fn shares_are_at_most_one() {
+    for w in [2.0, 8.0, 24.0, 56.0] {
+        let exact = Exact::new(&sea(w, 0.15, 5)).unwrap();
+        for theta in [0.0f64, 20.0, 45.0, 70.0] {
+            let (sin, cos) = theta.to_radians().sin_cos();
+            let engagement = Engagement::far(30.0, 1e6, &[[sin, 0.0, cos], [0.0, sin, cos]], 1e6).unwrap();
+            for s in exact.statistics(&engagement, &[0.0, 1e-9]) {
+                assert!(s.over.iter().all(|x| (0.0..=1.0).contains(x)), "{w} {theta}: {s:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn far_finer_facets_are_refused() {
     for (w, footprint) in [(238.0, 1e-3), (100.0, 1e-3), (150.0, 1e-6), (1.0, 1e-4)] {

@@ -27,6 +27,11 @@ pub fn default_out() -> PathBuf {
 
 /// Builds the plugins into `out/plugins`.
 pub fn build(out: &Path) -> Result<()> {
+    build_with(out, &[])
+}
+
+/// The same, compiled with further flags.
+pub fn build_with(out: &Path, flags: &[&str]) -> Result<()> {
     let start = Instant::now();
     check_processor()?;
     setup::setup()?;
@@ -44,7 +49,7 @@ pub fn build(out: &Path) -> Result<()> {
         let library = directory.join(name).with_extension("so");
         let partial = library.with_extension("so.part");
         let mut compiler = util::command(util::cxx()?);
-        compiler.args(COMPILE.split_whitespace()).arg("-I").arg(&sources).arg("-I").arg(&bridge);
+        compiler.args(COMPILE.split_whitespace()).args(flags).arg("-I").arg(&sources).arg("-I").arg(&bridge);
         for include in
             ["mitsuba/include", "drjit/include", "nanobind/include", "nanobind/ext/robin_map/include"]
         {

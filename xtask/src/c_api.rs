@@ -4,6 +4,7 @@ use crate::{cargo, util};
 use anyhow::{Context, Result, bail};
 use cbindgen::{Config, DocumentationStyle, EnumConfig, Language, RenameRule, Style};
 use std::fs;
+use std::path::PathBuf;
 
 const SOURCE: &str = "rust-core/src/c_api.rs";
 const HEADER: &str = "rust-core/include/prob_water.h";
@@ -57,6 +58,16 @@ pub fn header(check: bool) -> Result<()> {
 /// Compiles each C program against the header and the static library, and runs it. The shared library made beside it is
 /// what the Python tests call.
 pub fn c_test() -> Result<()> {
+    for program in programs("c-test", &[])? {
+        let name = util::shown(&program).to_string();
+        util::run(&mut util::command(&program), &name)?;
+        println!("c-test: {name} passed");
+    }
+    Ok(())
+}
+
+/// Compiles the C programs with further flags into `target/<directory>`.
+pub fn programs(directory: &str, flags: &[&str]) -> Result<Vec<PathBuf>> {
     let rust = cargo::static_library(
         "rust-core",
         &[
@@ -70,26 +81,26 @@ pub fn c_test() -> Result<()> {
             "staticlib,cdylib",
         ],
     )?;
-    let programs = util::files_with_extension(&util::root().join(PROGRAMS), "c")?;
-    if programs.is_empty() {
+    let sources = util::files_with_extension(&util::root().join(PROGRAMS), "c")?;
+    if sources.is_empty() {
         bail!("no C program in {PROGRAMS}");
     }
-    let directory = util::root().join("target/c-test");
+    let directory = util::root().join("target").join(directory);
     util::create_dir(&directory)?;
-    for source in programs {
+    let compile = |source: PathBuf| {
         let name = util::shown(&source).to_string();
         let program = directory.join(source.file_stem().expect("a file has a name"));
         util::run(
             util::command(util::program("CC", "cc"))
                 .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-I", "rust-core/include"])
+                .args(flags)
                 .arg(&source)
                 .arg(&rust.library)
                 .args(["-lm", "-lpthread", "-ldl", "-o"])
                 .arg(&program),
             &format!("compiling {name}"),
         )?;
-        util::run(&mut util::command(&program), &name)?;
-        println!("c-test: {name} passed");
-    }
-    Ok(())
+        Ok(program)
+    };
+    sources.into_iter().map(compile).collect()
 }

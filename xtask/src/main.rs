@@ -7,8 +7,11 @@ mod c_api;
 mod cargo;
 mod errors;
 mod figures;
+mod fuzz;
 mod render;
+mod sanitize;
 mod setup;
+mod stress;
 mod test;
 mod util;
 
@@ -27,6 +30,11 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   errors [--quick]  write docs/error-budget.md: every stage in float64 and float32 against 50 digits
   test              run every check: Rust, C, plugin, Python, style
   verify            the long campaigns: more samples, the live peer, the table docs/float32.md
+  stress [--count N] [--seconds S] [--seed K]
+                    adversarial and random seas and directions against every lobe (1e9 evaluations unless told)
+  fuzz [TARGET] [--seconds S]
+                    coverage-guided fuzzing of toml, table, c_abi and csv, a minute each unless told
+  sanitize          the C programs under valgrind and with sanitizers, the plugin with the address sanitizer
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and print the throughput table (options of validation/bench.py)
@@ -66,6 +74,9 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["bench", ..] => bench::bench(&arguments[1..])?,
         ["test"] => test::test()?,
         ["verify"] => test::verify()?,
+        ["stress", ..] => stress::stress(&arguments[1..])?,
+        ["fuzz", ..] => fuzz::fuzz(&arguments[1..])?,
+        ["sanitize"] => sanitize::sanitize()?,
         ["header"] => c_api::header(false)?,
         ["header", "--check"] => c_api::header(true)?,
         ["c-test"] => c_api::c_test()?,

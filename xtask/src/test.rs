@@ -2,7 +2,7 @@
 //!
 //! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
 
-use crate::{build, c_api, errors, figures, setup, util};
+use crate::{build, c_api, errors, figures, fuzz, sanitize, setup, stress, util};
 use anyhow::{Result, bail};
 use std::time::{Duration, Instant};
 
@@ -17,10 +17,12 @@ enum Outcome {
 }
 use Outcome::{Passed, Skipped};
 
-const STEPS: [Step; 7] = [
+const STEPS: [Step; 9] = [
     Step { name: "cargo test", run: cargo_test },
     Step { name: "header check", run: || c_api::header(true).map(|()| Passed) },
     Step { name: "C program", run: || c_api::c_test().map(|()| Passed) },
+    Step { name: "valgrind", run: valgrind },
+    Step { name: "stress", run: || stress::slice().map(|()| Passed) },
     Step { name: "plugin build", run: || build::build(&build::default_out()).map(|()| Passed) },
     Step { name: "pytest", run: pytest },
     Step { name: "cargo fmt", run: cargo_fmt },
@@ -85,8 +87,9 @@ fn run_pytest(options: &[&str]) -> Result<()> {
     )
 }
 
-/// The campaigns that are too long for every change: ray casting and exact statistics against draws, the Python checks
-/// with many more samples and the live peer, and the error table of docs/float32.md.
+/// The campaigns that are too long for every change: the whole of the stress campaign, fuzzing and memory checkers; ray
+/// casting and exact statistics against draws, the Python checks with many more samples and the live peer, and the error
+/// table of docs/float32.md.
 pub fn verify() -> Result<()> {
     let ignored = [
         "test",
@@ -101,7 +104,10 @@ pub fn verify() -> Result<()> {
         "1",
     ];
     util::run(util::cargo().args(ignored), "the long Rust tests")?;
+    stress::stress(&[])?;
+    fuzz::fuzz(&[])?;
     c_api::c_test()?;
+    sanitize::sanitize()?;
     build::build(&build::default_out())?;
     setup::peer()?;
     run_pytest(&["--full", "-s"])?;
@@ -109,6 +115,10 @@ pub fn verify() -> Result<()> {
         util::command(setup::python()).arg("validation/float32_errors.py"),
         "validation/float32_errors.py",
     )
+}
+
+fn valgrind() -> Result<Outcome> {
+    Ok(if sanitize::valgrind()? { Passed } else { Skipped("valgrind is not installed") })
 }
 
 fn cargo_fmt() -> Result<Outcome> {

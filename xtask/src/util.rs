@@ -69,6 +69,18 @@ pub fn succeeds(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
+/// Whether a compiler makes a program of nothing in a language, `c` or `c++`, with these flags.
+pub fn compiles(compiler: &str, language: &str, flags: &[&str]) -> Result<bool> {
+    let directory = root().join("target/compiles");
+    create_dir(&directory)?;
+    let source = directory.join("nothing.c");
+    std::fs::write(&source, "int main(void) { return 0; }\n")
+        .with_context(|| format!("cannot write {}", source.display()))?;
+    let mut command = command(compiler);
+    command.args(["-x", language]).args(flags).arg(&source).arg("-o").arg(directory.join("nothing"));
+    Ok(succeeds(&mut command))
+}
+
 /// Runs the command with the caller's terminal; a failure reads "`what` failed".
 pub fn run(command: &mut Command, what: &str) -> Result<()> {
     let status = command.status().map_err(|error| not_started(command, error))?;

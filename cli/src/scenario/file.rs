@@ -34,9 +34,18 @@ pub enum Method {
 impl Scenario {
     /// Reads a file; flags stand above its `[model]`, and a table above its own. Whatever is wrong is refused here.
     pub fn read(path: &Path, flags: &[Flag], table: Option<&Path>) -> Result<Self, String> {
-        let document = Document::read(path)?;
+        Self::of(&Document::read(path)?, path, flags, table)
+    }
+
+    /// The same of a text that stands for the file.
+    pub fn of(
+        document: &Document,
+        path: &Path,
+        flags: &[Flag],
+        table: Option<&Path>,
+    ) -> Result<Self, String> {
         let root = document.parse()?;
-        let mut model = Model { document: &document, at: None, items: Vec::new(), table: None };
+        let mut model = Model { document, at: None, items: Vec::new(), table: None };
         let mut own = Vec::new();
         let mut entries = Vec::new();
         for item in document.items(&root) {

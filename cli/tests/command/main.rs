@@ -1,5 +1,6 @@
 //! The command as users run it: the real binary, its streams and its exit status.
 
+mod any_bytes;
 mod brdf;
 mod empirical;
 mod files;
@@ -24,7 +25,7 @@ fn command() -> Command {
 }
 
 /// Runs `prob-water` with arguments separated by blanks.
-fn run(arguments: &str, input: &str) -> Output {
+fn run(arguments: &str, input: impl AsRef<[u8]>) -> Output {
     let mut child = command()
         .args(arguments.split_whitespace())
         .stdin(Stdio::piped())
@@ -33,7 +34,7 @@ fn run(arguments: &str, input: &str) -> Output {
         .spawn()
         .unwrap();
     // A command that refuses its flags does not read its input.
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let _ = child.stdin.take().unwrap().write_all(input.as_ref());
     child.wait_with_output().unwrap()
 }
 

@@ -69,7 +69,10 @@ impl<V: Vector> Add for Pair<V> {
     #[inline(always)]
     fn add(self, b: Self) -> Self {
         let sum = Self::sum(self.high, b.high);
-        Self { high: sum.high, low: sum.low + (self.low + b.low) }
+        // Where the high parts cancel the low ones come to count.
+        let low = sum.low + (self.low + b.low);
+        let high = sum.high + low;
+        Self { high, low: low - (high - sum.high) }
     }
 }
 
@@ -128,11 +131,15 @@ impl<V: Vector> Wide<Lanes<V>> for Pair<V> {
         let swapped = x.high.lt(y.high);
         let (most, least) = (Self::select(swapped, y, x), Self::select(swapped, x, y));
         let q = least.quotient(Self { high: Lanes::max(most.high, Lanes::TINY), low: most.low });
-        // atan(q + e) = q + (atan(q) - q) + e/(1 + q^2).
-        let q2 = q.high * q.high;
-        let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
-        let inverse = (q2 * half - one).mul_add(q2, one);
-        let angle = Self::quick_sum(q.high, q.high * Lanes::atan_rest(q2), q.low * inverse);
+        // atan(q) = q - q^3/3 + ..., the cube as a pair too: half of a steep tilt's rounding would be its own.
+        let q2 = q * q;
+        let cube = q2 * q * Self::of(-1.0 / 3.0);
+        let q4 = q2.high * q2.high;
+        let rest = q4 * q.high * Lanes::atan_rest(q2.high);
+        // What q's low part changes in it is about q^4/2 of that.
+        let low = (q4 * Lanes::splat(0.5)).mul_add(q.low, q.low + cube.low);
+        let most = Self::quick_sum(q.high, cube.high, low);
+        let angle = Self::quick_sum(most.high, rest, most.low);
         let angle = Self::select(swapped, angle.short_of(HALF_PI), angle);
         let behind = other.high.lt(Lanes::splat(0.0));
         Self::select(behind, angle.short_of(PI), angle).turn(self.high)

@@ -1,0 +1,22 @@
+//! The stress campaign: `rust-core/examples/stress`.
+
+use crate::util;
+use anyhow::Result;
+
+/// Seconds of it in every test.
+const SLICE: &str = "12";
+
+/// Builds and runs it; the arguments are its own.
+pub fn stress(arguments: &[String]) -> Result<()> {
+    util::run(
+        util::cargo()
+            .args(["run", "--release", "--quiet", "-p", "prob-water", "--example", "stress", "--"])
+            .args(arguments),
+        "the stress campaign",
+    )
+}
+
+/// As much as every test has time for.
+pub fn slice() -> Result<()> {
+    stress(&["--seconds", SLICE].map(String::from))
+}
