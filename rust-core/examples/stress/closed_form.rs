@@ -47,8 +47,9 @@ const GRAZING: f64 = 1.7e-6;
 /// Vertical components of normals from which on it holds: to 89.9 degrees. Beyond, tilts are quotients of what hardly differs
 /// from 0.
 const LYING: f64 = 1.7e-3;
-/// Reflectances from which on it holds: those of indices from 1.1, as water's are from 0.2 to 200 micrometres.
-const FAINT: f64 = 2e-3;
+/// Indices from which on it holds; water's are, from 0.2 to 200 micrometres. Next to 1 rounding decides what is left of
+/// 1 - cos zeta, and so of rho.
+const INDEX: f64 = 1.1;
 /// Values that float32 holds to four digits, and not yet cut off at its end.
 const RANGE: std::ops::Range<f64> = 1e-34..1e37;
 
@@ -71,7 +72,7 @@ pub fn block(draw: &mut Draw, tally: &mut Tally) {
         tally.count(name, ROWS as u64);
         let found: Vec<f64> = found.into_iter().map(f64::from).collect();
         values(tally, &sea, name, &block, &found);
-        if block.alike {
+        if block.alike && water.ior >= INDEX {
             compare(tally, &sea, &water, names, &block, size, &f, &found);
         }
     }
@@ -121,10 +122,7 @@ fn compare(
             continue;
         }
         let size = size(row);
-        // Next to an index of 1 rounding decides what is left of 1 - cos zeta, and so of rho.
-        let zeta = [0, 1, 2].map(|k| i[k] + o[k]);
-        let rho = water.lobe.facets.reflectance.eval((0.5 * dot(zeta, zeta).sqrt()).min(1.0));
-        if !RANGE.contains(&size) || rho < FAINT {
+        if !RANGE.contains(&size) {
             continue;
         }
         let level = *n == [0.0, 0.0, 1.0];
