@@ -1,11 +1,12 @@
 """Renders scenes of water on request; one process per environment, so that both can take turns.
 
 Reads requests from standard input, a JSON object a line, and answers each with one: `load` a case, render its
-`reference`, `render` it. Times are of rendering alone; what loading took and the first rendering, in which kernels are
+`reference` or take that `reference_of` another case, `warm` the kernels of a number of samples, `render`. Times are of rendering alone; what loading took and the first rendering, in which kernels are
 compiled, are answers of `load`.
 """
 
 import json
+import os
 import sys
 import time
 import xml.etree.ElementTree as xml
@@ -17,7 +18,7 @@ import mitsuba as mi
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-SIZE = {"width": 96, "height": 64}
+SIZE = {"width": 64, "height": 48}
 
 
 def sun_glint(bsdf: dict[str, Any], integrator: dict[str, Any]) -> Any:
@@ -55,18 +56,20 @@ def water_alone(bsdf: dict[str, Any], integrator: dict[str, Any]) -> Any:
     })
 
 
-def sky(width: int = 256) -> np.ndarray:
-    """Brighter to the horizon, with a sun of half a degree, 35 degrees high, that gives five times as much light."""
+def sky(width: int = 512) -> np.ndarray:
+    """Brighter to the horizon, with a sun of two degrees, as through haze, 35 degrees high, that gives five times as much
+    light as the rest."""
     up, turn = np.meshgrid((0.5 - (np.arange(width // 2) + 0.5) / (width // 2)) * np.pi,
                            (np.arange(width) + 0.5) / width * 2 * np.pi, indexing="ij")
-    gradient = 0.3 + 0.7 * np.exp(-4 * np.maximum(np.sin(up), 0))
-    # In the map's frame, y up; the camera looks to +x of the scene.
     way = np.stack([np.sin(turn) * np.cos(up), np.sin(up), -np.cos(turn) * np.cos(up)])
-    e = np.radians(35)
-    near = np.tensordot([np.cos(e), np.sin(e), 0.0], way, 1) > np.cos(np.radians(0.266))
-    colour = gradient[..., None] * [0.5, 0.7, 1.0]
-    colour[near] = 5 * 0.5 * np.pi / np.sin(e) / (np.pi * np.radians(0.266) ** 2)
-    return np.where(up[..., None] > 0, colour, 0.02).astype(np.float32)
+    light = (0.3 + 0.7 * np.exp(-4 * np.maximum(np.sin(up), 0)))[..., None] * [0.5, 0.7, 1.0]
+    light[up < 0] = 0.02
+    # The map has +y up; +x is where the camera looks.
+    height = np.radians(35)
+    sun = np.tensordot([np.cos(height), np.sin(height), 0.0], way, 1) > np.cos(np.radians(1))
+    level = np.cos(up) * np.maximum(np.sin(up), 0)
+    light[sun] = 5 * (light * level[..., None])[~sun].sum() / 3 / level[sun].sum()
+    return light.astype(np.float32)
 
 
 SCENES = {"sun_glint": sun_glint, "water_alone": water_alone}
@@ -77,6 +80,7 @@ class Case:
 
     def __init__(self, variant: str, scene: str, bsdf: dict[str, Any], integrator: dict[str, Any], plugins: str | None):
         mi.set_variant(variant)
+        mi.set_log_level(mi.LogLevel.Error)
         self.variant, self.reference = variant, None
         if variant.startswith("llvm"):
             # The class is the variant's: it can be defined once that is set.
@@ -116,7 +120,9 @@ class Case:
 
 
 def main() -> None:
-    """Answers requests until there are no more."""
+    """Answers requests until there are no more; what the renderer prints is kept out of the answers."""
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
     cases: dict[str, Case] = {}
     for line in sys.stdin:
         request = json.loads(line)
@@ -128,13 +134,20 @@ def main() -> None:
             cases[name] = Case(**request)
             first, again = (cases[name].image(spp, seed)[0] for seed in (1, 2))
             answer = {"loading_s": cases[name].loading, "compiling_s": max(first - again, 0.0), "seconds": again}
+        elif kind == "reference_of":
+            other = cases[request["other"]]
+            cases[name].reference, cases[name].noise2 = other.reference, other.noise2
+            answer = {}
         elif kind == "reference":
             cases[name].mean_image(**request)
             reference = cases[name].reference
             answer = {"mean": float(reference.mean()), "own_rmse": float(np.sqrt(cases[name].noise2) / reference.mean())}
+        elif kind == "warm":
+            cases[name].image(request["spp"], seed=0)
+            answer = {}
         else:
             answer = cases[name].render(**request)
-        print(json.dumps(answer), flush=True)
+        print(json.dumps(answer), file=answers, flush=True)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Run time against error of traced evaluation and of the mesh, one thread, as lines of JSON.
 
-`front_traced.py REPEATS DIRECTORY`, after the core's example `fronts` has written the same pairs and rays there.
+`front_traced.py REPEATS DIRECTORY [--quick]`, after the core's example `fronts` has written the same pairs and rays there.
 """
 
 import json
@@ -57,12 +57,12 @@ def brdf(repeats: int, directory: Path) -> None:
     point("brdf", "Dr.Jit", "llvm_ad_rgb", rms(f - reference) / rms(reference), seconds)
 
 
-def mesh(repeats: int, directory: Path) -> None:
+def mesh(repeats: int, directory: Path, quick: bool) -> None:
     """Rays, and looks from above, onto meshes of the core's sea."""
     look, hit, normal = np.moveaxis(np.fromfile(directory / "rays.f64", "<f8").reshape(-1, 3, 3), 1, 0)
     place = np.fromfile(directory / "places.f64", "<f8").reshape(-1, 5)
     distance = np.linalg.norm(hit - [0, 0, 10], axis=1)
-    for vertices in VERTICES:
+    for vertices in VERTICES[:2 if quick else None]:
         start = time.perf_counter()
         shape = mi.load_dict({"type": "prob_water_surface", "friction_velocity": 8, "radius": RADIUS, "memory": 4096,
                               "vertices": vertices, "bsdf": {"type": "diffuse"}})
@@ -94,7 +94,7 @@ def main() -> None:
     dr.set_thread_count(1)
     repeats, directory = int(sys.argv[1]), Path(sys.argv[2])
     brdf(repeats, directory)
-    mesh(repeats, directory)
+    mesh(repeats, directory, "--quick" in sys.argv)
 
 
 if __name__ == "__main__":
