@@ -59,11 +59,11 @@ def measure(quick: bool, rounds: int, skipped: dict[str, str]) -> dict[str, Any]
     return {"points": points, "glint": glint}
 
 
-def lines(command: list[str], what: str) -> list[dict[str, Any]]:
-    """What a program prints as lines of JSON, computed on one thread."""
+def lines(command: list[str], what: str, one_thread: bool = True) -> list[dict[str, Any]]:
+    """What a program prints as lines of JSON."""
     print(f"bench: {what}", file=sys.stderr, flush=True)
-    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True,
-                          env=os.environ | {"RAYON_NUM_THREADS": "1"})
+    threads = {"RAYON_NUM_THREADS": "1"} if one_thread else {}
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True, env=os.environ | threads)
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
