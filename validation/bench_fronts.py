@@ -36,7 +36,7 @@ FRONTS = {
     "mesh_slope": ("Slopes of that mesh", "time to build", "RMS error of the slope", "Of triangles, and of their "
                    "interpolated normals, at the same places."),
     "rendering": ("A picture of water alone", "time per image", "relative RMS error of a pixel",
-                  "64 x 48 pixels, environment map with a sun, llvm_ad_rgb on all cores, one integrator for all, which draws "
+                  "96 x 64 pixels, environment map with a sun, llvm_ad_rgb on all cores, one integrator for all, which draws "
                   "directions by the light sources and also as named, joined by the balance heuristic; labels are samples "
                   "per pixel. Each BSDF is compared with its own converged image."),
 }

@@ -18,7 +18,7 @@ import mitsuba as mi
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-SIZE = {"width": 64, "height": 48}
+SIZE = {"width": 96, "height": 64}
 
 
 def sun_glint(bsdf: dict[str, Any], integrator: dict[str, Any]) -> Any:

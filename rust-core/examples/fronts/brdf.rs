@@ -75,8 +75,7 @@ fn wavy(repeats: usize, many: &[[Vec3<f32>; 2]], rng: &mut StdRng) {
     let water = parameters.configure().expect("the parameters are valid");
     let lobe = EmpiricalLobe::new(&water, Table::standard()).expect("the table knows this sea");
     let exact = Exact::new(&water).expect("enough components");
-    let pairs: Vec<[Vec3<f32>; 2]> =
-        (0..MEANS).map(|_| [direction(rng, 0.1), direction(rng, 0.1)]).collect();
+    let pairs: Vec<[Vec3<f32>; 2]> = (0..MEANS).map(|_| [direction(rng, 0.1), direction(rng, 0.1)]).collect();
     let looks: Vec<_> = pairs
         .iter()
         .map(|[i, o]| {

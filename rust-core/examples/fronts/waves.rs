@@ -30,10 +30,8 @@ pub fn front(repeats: usize, directory: &Path) {
     let mut rng = StdRng::seed_from_u64(1);
     let looks: Vec<_> = (0..RAYS)
         .map(|_| {
-            let (down, turn) = (
-                rng.random_range(10.0f64..60.0).to_radians(),
-                rng.random_range(0.0..std::f64::consts::TAU),
-            );
+            let (down, turn) =
+                (rng.random_range(10.0f64..60.0).to_radians(), rng.random_range(0.0..std::f64::consts::TAU));
             DVec3::new(down.cos() * turn.cos(), down.cos() * turn.sin(), -down.sin())
         })
         .collect();
