@@ -9,7 +9,7 @@ import front_plot
 from bench_report import ROOT, Table
 from figure_page import STYLE
 
-OVERVIEW = ["brdf", "means", "cast", "mesh_height", "rendering"]
+OVERVIEW = ["brdf", "wavy", "means", "cast", "mesh_height", "rendering"]
 
 
 def write(fronts: dict[str, Any], facts: str, small: Path | None) -> Path:

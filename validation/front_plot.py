@@ -38,11 +38,10 @@ def draw(axes: Axes, front: str, points: list[dict[str, Any]], small: bool = Fal
             if point["setting"].isdigit():
                 axes.annotate(f"{int(point['setting']):,}", place[id(point)], xytext=(5, 4), textcoords="offset points",
                               fontsize=7.5, color=colour)
-    if not all(point["error"] for point in points):
-        axes.annotate("references, no error", (0.99, edge), xycoords=("axes fraction", "data"), ha="right", va="bottom",
-                      fontsize=8, color="#444444", xytext=(0, 5), textcoords="offset points")
     axes.set(xscale="log", yscale="log", title=title, xlabel=time, ylabel=error)
     decorate(axes)
+    if not all(point["error"] for point in points):
+        zero(axes, edge)
 
 
 def front_line(axes: Axes, places: list[tuple[float, float]], edge: float) -> None:
@@ -64,6 +63,17 @@ def decorate(axes: Axes) -> None:
         axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
     axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def zero(axes: Axes, edge: float) -> None:
+    """References stand at 0, below a break of the logarithmic axis."""
+    ends = axes.get_ylim()
+    axes.axhline(2.5 * edge, color="#999999", linewidth=0.8, linestyle=(0, (4, 4)))
+    ticks = [y for y in axes.get_yticks() if 3 * edge < y <= ends[1]]
+    words = [f"{y:.0e}" if y < 1e-3 else f"{y:g}" for y in ticks]
+    axes.set_yticks([edge, *ticks], ["0", *words])
+    axes.set_yticks([], minor=True)
+    axes.set_ylim(edge / 2.5, ends[1])
 
 
 def single(front: str, points: list[dict[str, Any]]) -> Any:

@@ -13,7 +13,7 @@ const PAIRS: usize = 1 << 18;
 /// Pairs with which a mean over surfaces is compared.
 const MEANS: usize = 400;
 
-/// The front `brdf`.
+/// The fronts `brdf`, of the flat sea, and `wavy`, of one with drawn waves.
 pub fn front(repeats: usize, directory: &Path) {
     let mut rng = StdRng::seed_from_u64(1);
     // Float32 numbers for everyone: what is compared is the evaluation.
@@ -106,7 +106,7 @@ fn wavy(repeats: usize, many: &[[Vec3<f32>; 2]], rng: &mut StdRng) {
         times[2].push(seconds(|| means(&mut reference)));
     }
     let per_pair = |times: &[f64]| times[1..].iter().map(|s| s / MEANS as f64).collect::<Vec<_>>();
-    point("brdf", "empirical table", "float32", error(&out, &reference), &per_pair(&times[0]));
-    point("brdf", "drawn surfaces", "50", error(&drawn, &reference), &per_pair(&times[1]));
-    point("brdf", "exact means", "", 0.0, &per_pair(&times[2]));
+    point("wavy", "empirical table", "float32", error(&out, &reference), &per_pair(&times[0]));
+    point("wavy", "drawn surfaces", "50", error(&drawn, &reference), &per_pair(&times[1]));
+    point("wavy", "exact means", "", 0.0, &per_pair(&times[2]));
 }
