@@ -27,7 +27,7 @@ class Table(NamedTuple):
 
     def markdown(self) -> str:
         """Numbers to the right, the first column to the left."""
-        numeric = [bool(self.rows) and all(re.match(r"[-<]?[\d.]", row[k]) or row[k] in ("", "-") for row in self.rows)
+        numeric = [bool(self.rows) and all(re.match(r"-?[\d.].{,23}$|-?$", row[k]) for row in self.rows)
                    for k in range(len(self.columns))]
         head = ["---:" if k and number else "---" for k, number in enumerate(numeric)]
         return "\n".join("| " + " | ".join(row) + " |" for row in [self.columns, head, *self.rows])

@@ -30,8 +30,8 @@ fn main() {
         let places: Vec<[f64; 2]> =
             (0..PLACES).map(|n| [0.731 * n as f64 % 97.0, 0.419 * n as f64 % 89.0]).collect();
 
-        // Another way to sum the same waves is one more line here, named in `validation/bench_waves.py` where it has an
-        // aim.
+        // Another way to sum the same waves is one more line here, and `validation/bench_core.py` holds it against its
+        // gate.
         let candidates: Vec<Candidate> = vec![
             ("libm", {
                 let (waves, places) = (plain(&waves), &places);
