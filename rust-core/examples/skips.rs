@@ -15,7 +15,8 @@ fn main() {
     let repeats: usize = std::env::args().nth(1).map_or(9, |n| n.parse().expect("REPEATS is a number"));
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("nothing has run in parallel yet");
     obscuration(repeats);
-    let engagement = Engagement::far(30.0, 10e3, &[[0.5, 0.0, 0.75f64.sqrt()]; 25], 100e3).expect("it is valid");
+    let engagement =
+        Engagement::far(30.0, 10e3, &[[0.5, 0.0, 0.75f64.sqrt()]; 25], 100e3).expect("it is valid");
     for w in [8.0, 24.0] {
         let time = |whitecaps| {
             let water = sea(w, Parameters { whitecaps, surface: Surface::Instance, ..Parameters::default() });
