@@ -34,8 +34,8 @@ def write(fronts: dict[str, Any], facts: str, small: Path | None) -> Path:
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
         f"<title>prob-water: run time against error</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
         "<h1>Run time against error</h1>\n<p>Every point is a configuration that can be had. Nothing lies below and to the "
-        "left of the grey line; what lies above and to the right of it is beaten in both. Times are medians, bars their "
-        f"quartiles.</p>\n<p>{escape(facts)}</p>\n{''.join(sections)}{tables}</body>\n</html>\n", encoding="utf-8")
+        "left of the grey line; what lies above and to the right of it is beaten in both. Times are the best, bars reach to "
+        f"the upper quartile.</p>\n<p>{escape(facts)}</p>\n{''.join(sections)}{tables}</body>\n</html>\n", encoding="utf-8")
     return page
 
 

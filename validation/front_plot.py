@@ -23,7 +23,7 @@ def draw(axes: Axes, front: str, points: list[dict[str, Any]], small: bool = Fal
     points = [point for point in points if point["front"] == front]
     known = [point["error"] for point in points if point["error"] > 0]
     edge = BELOW * min(known)
-    place = {id(point): (point["seconds"]["median"], point["error"] or edge) for point in points}
+    place = {id(point): (point["seconds"]["best"], point["error"] or edge) for point in points}
     front_line(axes, [place[id(point)] for point in efficient(points)], edge)
     names = list(dict.fromkeys(point["family"] for point in points))
     for name, colour, marker in zip(names, COLOURS, MARKERS):
@@ -31,7 +31,7 @@ def draw(axes: Axes, front: str, points: list[dict[str, Any]], small: bool = Fal
         x, y = np.array([place[id(point)] for point in family]).T
         axes.plot(x, y, color=colour, marker=marker, markersize=6, linewidth=1, label=name, zorder=3,
                   markerfacecolor="white" if not any(point["error"] for point in family) else colour)
-        ends = np.array([point["seconds"]["quartiles"] for point in family])
+        ends = np.array([(point["seconds"]["best"], point["seconds"]["quartiles"][1]) for point in family])
         axes.hlines(y, *ends.T, color=colour, linewidth=3, alpha=0.35, zorder=2)
         labelled = family if not small else [family[0], family[-1]] if len(family) > 1 else family
         for point in labelled:
@@ -92,7 +92,8 @@ def overview(points: list[dict[str, Any]], fronts: list[str]) -> Any:
     panels = page.subplots((len(fronts) + 1) // 2, 2, squeeze=False).flat
     for axes, front in zip(panels, fronts, strict=False):
         draw(axes, front, points, small=True)
-        axes.legend(fontsize=7.5, loc="best")
+        corner = "lower left" if any(point["front"] == front and not point["error"] for point in points) else "upper right"
+        axes.legend(fontsize=7.5, loc=corner)
     for axes in list(panels)[len(fronts):]:
         axes.remove()
     return page
