@@ -23,6 +23,8 @@ from typing import Any
 SLACK, EXACT_SLACK = 0.10, 0.02
 #: Fewer rounds say nothing of the spread.
 ROUNDS = 3
+#: Names told of figures that one run lacks.
+SHOWN = 5
 
 
 class BadInput(Exception):
@@ -91,7 +93,8 @@ def main() -> int:
         print(f"{row['name'][:69]:70}{row['best']:8.2f}{row['median']:8.2f}{limit:>8}  {row['verdict']}")
     for title, one, other in (("first", a, b), ("second", b, a)):
         if missing := [name for name in one if name not in other]:
-            print(f"only in the {title}: {', '.join(missing)}")
+            more = f" and {len(missing) - SHOWN} more" if len(missing) > SHOWN else ""
+            print(f"only in the {title}: {'; '.join(missing[:SHOWN])}{more}")
     found = [row["name"] for row in rows if row["verdict"] == "WORSE"]
     medians = sorted(row["median"] for row in rows)
     if rows:

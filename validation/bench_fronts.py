@@ -108,7 +108,9 @@ def figures(fronts: dict[str, Any]) -> dict[str, dict[str, Any]]:
             found[f"{name} / error"] = exactly(point["error"])
             continue
         found[f"{name} / time"] = {"unit": "s", "better": "less", **point["seconds"]}
-        if point["error"]:
+        if "errors" in point:
+            found[f"{name} / error"] = {"unit": "of the mean", "better": "less", **spread(point["errors"])}
+        elif point["error"]:
             found[f"{name} / error"] = exactly(point["error"])
     for scene, race in (fronts["glint"] or {"races": {}})["races"].items():
         for water in (water for water in bench_glint.WATERS if water in race):

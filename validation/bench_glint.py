@@ -158,6 +158,7 @@ def curves(renderers: dict[str, Renderer], quick: bool) -> list[dict[str, Any]]:
             runs = [renderer.ask("render", name, spp=spp, seed=20 + seed) for seed in range(1 if quick else 3)]
             points.append({"front": "rendering", "family": name, "setting": str(spp),
                            "error": float(np.sqrt(np.mean([run["rmse"] ** 2 for run in runs]))),
+                           "errors": [run["rmse"] for run in runs],
                            "seconds": [run["seconds"] for run in runs]})
     return points
 

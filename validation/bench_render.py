@@ -1,8 +1,8 @@
 """Renders scenes of water on request; one process per environment, so that both can take turns.
 
 Reads requests from standard input, a JSON object a line, and answers each with one: `load` a case, render its
-`reference` or take that `reference_of` another case, `warm` the kernels of a number of samples, `render`. Times are of rendering alone; what loading took and the first rendering, in which kernels are
-compiled, are answers of `load`.
+`reference` or take that `reference_of` another case, `warm` the kernels of a number of samples, `render`. Times are of
+rendering alone; what loading took and the first rendering, in which kernels are compiled, are answers of `load`.
 """
 
 import json
@@ -38,7 +38,8 @@ def element(tag: str, values: dict[str, Any]) -> xml.Element:
     made, kinds = xml.Element(tag, type=values["type"]), {bool: "boolean", int: "integer", float: "float", str: "string"}
     for name, value in values.items():
         if name != "type":
-            xml.SubElement(made, kinds[type(value)], name=name, value=str(value).lower() if value in (True, False) else str(value))
+            text = str(value).lower() if isinstance(value, bool) else str(value)
+            xml.SubElement(made, kinds[type(value)], name=name, value=text)
     return made
 
 
