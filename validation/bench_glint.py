@@ -28,8 +28,6 @@ PATH = {"type": "path", "max_depth": 2}
 CURVES = [("prob_water, its sampling", "prob_water", "bsdf"), ("prob_water, cosine", "prob_water", "cosine"),
           ("prob_water, light sources only", "prob_water", "emitter"), ("ocean_legacy, its sampling", "ocean_legacy", "bsdf")]
 TARGET = 0.01
-#: Images are to come within this factor of it.
-NEAR = 1.2
 #: Times of ocean_legacy over prob_water's.
 AIM = 2.0
 
@@ -97,11 +95,6 @@ def race(renderers: dict[str, Renderer], scene: str, quick: bool, rounds: int) -
         found[water]["needed"] = series[-1] if quick else needed(found[water]["runs"])
         found[water]["compiled"] = compiled(renderer, scene, found[water]["needed"])
         found[water]["reached"] = []
-        # A few bright pixels may have misled the series.
-        rmse = to_target([renderer.ask("render", scene, spp=found[water]["needed"], seed=400 + k) for k in range(rounds)])["rmse"]
-        if not quick and not 1 / NEAR < rmse / TARGET < NEAR:
-            found[water]["needed"] = round(found[water]["needed"] * (rmse / TARGET) ** 2)
-            found[water]["compiled"] = compiled(renderer, scene, found[water]["needed"])
     for seed in range(3 * rounds):
         for water, renderer in renderers.items():
             found[water]["reached"].append(renderer.ask("render", scene, spp=found[water]["needed"], seed=500 + seed))
@@ -120,8 +113,12 @@ def trial(renderer: Renderer, scene: str, variant: str, spp: int = 64, passes: i
 
 
 def needed(runs: list[dict[str, float]]) -> int:
-    """Samples for 1 %: the error falls with their square root."""
-    return max(16, round(float(np.mean([run["spp"] * run["rmse"] ** 2 for run in runs])) / TARGET**2))
+    """Samples for 1 %, by the power of their number with which the error falls: a half or, pixels being sampled evenly, a
+    little more. A square, which that sampler takes as it is."""
+    fewer, more = sorted({run["spp"] for run in runs})[-2:]
+    first, last = (np.sqrt(np.mean([run["rmse"] ** 2 for run in runs if run["spp"] == spp])) for spp in (fewer, more))
+    power = np.clip(np.log(first / last) / np.log(more / fewer), 0.5, 1.0)
+    return max(4, round(np.sqrt(more * (last / TARGET) ** (1 / power)))) ** 2
 
 
 def compiled(renderer: Renderer, scene: str, spp: int) -> float:

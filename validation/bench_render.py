@@ -22,8 +22,7 @@ SIZE = {"width": 96, "height": 64}
 
 
 def sun_glint(bsdf: dict[str, Any], integrator: dict[str, Any]) -> Any:
-    """scenes/sun_glint.xml with a BSDF of numbers and an integrator in place of its own, pixels of one box each, and independent
-    samples: with evenly spread ones the error depends on how their number comes apart into factors."""
+    """scenes/sun_glint.xml with a BSDF of numbers and an integrator in place of its own; pixels of one box each."""
     root = xml.parse(ROOT / "scenes/sun_glint.xml").getroot()
     shape, film = root.find("shape"), root.find("sensor/film")
     shape.remove(shape.find("bsdf"))
@@ -31,7 +30,6 @@ def sun_glint(bsdf: dict[str, Any], integrator: dict[str, Any]) -> Any:
     root.remove(root.find("integrator"))
     root.append(element("integrator", integrator))
     film.find("rfilter").set("type", "box")
-    root.find("sensor/sampler").set("type", "independent")
     return mi.load_string(xml.tostring(root, encoding="unicode"), **{key: str(value) for key, value in SIZE.items()})
 
 
@@ -51,7 +49,7 @@ def water_alone(bsdf: dict[str, Any], integrator: dict[str, Any]) -> Any:
     return mi.load_dict({
         "type": "scene", "integrator": integrator,
         "sensor": {"type": "perspective", "fov": 60, "to_world": look,
-                   "sampler": {"type": "independent"},
+                   "sampler": {"type": "multijitter"},
                    "film": {"type": "hdrfilm", **SIZE, "pixel_format": "rgb", "rfilter": {"type": "box"}}},
         # Mitsuba's maps have +y up.
         "sky": {"type": "envmap", "bitmap": mi.Bitmap(sky()), "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90)},
