@@ -1,7 +1,7 @@
 """Speed: prob_water, Mitsuba's own BSDFs, their peer `ocean_legacy`, and the Rust core, its engagements and its
-empirical model included.
+empirical model included; and run time against error.
 
-Run by `cargo xtask bench [--quick] [--rounds N] [--output FILE]`. The traced BSDFs are timed by
+Run by `cargo xtask bench [fronts] [--quick] [--rounds N] [--output FILE] [--docs]`. The traced BSDFs are timed by
 bench_throughput.py in two processes, one per Python environment, that take turns; the table shows the best
 and the median of all passes. The aims are judged by the best, which other work on the machine disturbs least;
 nothing fails when one is missed.
@@ -11,16 +11,17 @@ import argparse
 import json
 import os
 import platform
-import statistics
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import bench_core
 import bench_empirical
 import bench_engagements
+import bench_fronts
+from bench_report import ROOT, Table, aim, show, spread, write_page
 
-ROOT = Path(__file__).parents[1]
 PYTHONS = {"prob_water": sys.executable, "peer": str(ROOT / ".venv-peer/bin/python")}
 PLUGINS = {"prob_water": str(ROOT / "target/mitsuba"), "peer": None}
 ROUGHCONDUCTOR = {"type": "roughconductor", "alpha": 0.2}
@@ -78,11 +79,6 @@ def why_not(environment: str) -> str | None:
     return None
 
 
-def summary(rates: list[float]) -> dict[str, float]:
-    """Best and median."""
-    return {"best": max(rates), "median": statistics.median(rates)}
-
-
 def traced(rounds: int, passes: int, pairs: int) -> dict[str, Any]:
     """Rounds that alternate between the environments: their versions and every candidate's figures."""
     skipped = {environment: reason for environment in BSDFS if (reason := why_not(environment))}
@@ -97,18 +93,21 @@ def traced(rounds: int, passes: int, pairs: int) -> dict[str, Any]:
             for name, operations in result["rates"].items():
                 for operation, values in operations.items():
                     rates.setdefault(name, {}).setdefault(operation, []).extend(values)
-    figures = {name: {operation: summary(values) for operation, values in operations.items()}
+    figures = {name: {operation: spread(values, "more") for operation, values in operations.items()}
                for name, operations in rates.items()}
     return {"pairs": pairs, "skipped": skipped, "versions": versions, "million_per_s": figures}
 
 
 def core(example: str, repeats: int) -> list[dict[str, Any]]:
     """The Rust core's own figures, from one of its examples."""
-    print(f"bench: the Rust core, {example}", file=sys.stderr)
     command = [os.environ.get("CARGO", "cargo"), "run", "--release", "--quiet", "-p", "prob-water",
                "--example", example, "--", str(repeats)]
-    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
-    return [json.loads(line) for line in done.stdout.splitlines()]
+    rows = bench_fronts.lines(command, f"the Rust core, {example}", one_thread=False)
+    for row in rows:
+        for key in ("per_s", "seconds", "exact"):
+            if isinstance(row.get(key), list):
+                row[key] = spread(row[key], "more" if key == "per_s" else "less")
+    return rows
 
 
 def ratios(figures: dict[str, Any]) -> list[dict[str, Any]]:
@@ -128,7 +127,7 @@ def machine() -> dict[str, Any]:
     cpuinfo = Path("/proc/cpuinfo")
     lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return {"processor": names[0] if names else platform.processor(), "cores": os.cpu_count(),
+    return {"processor": names[0] if names else platform.processor(), "cores": os.cpu_count(), "load": os.getloadavg()[0],
             "system": platform.platform(), "python": platform.python_version()}
 
 
@@ -139,58 +138,91 @@ def commit() -> str:
     return done.stdout.strip() or "unknown"
 
 
-def show(report: dict[str, Any]) -> None:
-    """Prints the tables; those of what was skipped are left out."""
-    traced, operations = report["traced"], ("eval", "pdf", "sample")
-    print(f"{report['machine']['processor']}, {report['machine']['cores']} cores; commit {report['commit']}")
-    print(f"\nllvm_ad_rgb, {traced['pairs']} random pairs, million/s: best (median)")
-    for environment, version in traced["versions"].items():
-        print(f"{environment}: " + ", ".join(f"{name} {value}" for name, value in version.items()))
-    for environment, reason in traced["skipped"].items():
-        print(f"skipped, {environment}: {reason}")
-    if traced["million_per_s"]:
-        print(f"{'':36}" + "".join(f"{operation:>15}" for operation in operations))
-    for name, figures in traced["million_per_s"].items():
-        cells = (figures[operation] for operation in operations)
-        texts = (f"{cell['best']:.0f} ({cell['median']:.0f})" for cell in cells)
-        print(f"{name:36}" + "".join(f"{text:>15}" for text in texts))
+def traced_tables(report: dict[str, Any]) -> list[Table]:
+    """The BSDFs and what is aimed at; without those that were skipped."""
+    operations = ("eval", "pdf", "sample")
+    rows = [[name, *(f"{figures[operation]['best']:.0f} ({figures[operation]['median']:.0f})" for operation in operations)]
+            for name, figures in report["traced"]["million_per_s"].items()]
+    ratios = [[f"{row['operation']}, {row['of']} / {row['over']}", f"{row['best']:.2f} ({row['median']:.2f})",
+               f"{row['aim']:g}", aim(row["best"], row["aim"])] for row in report["ratios"]]
+    return [Table("traced", f"llvm_ad_rgb, {report['traced']['pairs']} random pairs, million/s: best (median)",
+                  ["", *operations], rows),
+            Table("ratios", "Ratios, from the best (from the medians)", ["ratio", "", "aim", ""], ratios)]
 
-    if report["ratios"]:
-        print("\nratio, from the best (from the medians)")
-    for row in report["ratios"]:
-        print(f"{row['operation']:>6}  {row['of'] + ' / ' + row['over']:50} {row['best']:5.2f}"
-              f" ({row['median']:.2f})  aim {row['aim']:g}: {'met' if row['met'] else 'missed'}")
 
-    print("\nRust core, one thread, million/s: best (median); configure: microseconds each")
-    for row in report["scalar"]:
-        best, median = row["best_per_s"], row["median_per_s"]
-        cell = f"{1e6 / best:.0f} ({1e6 / median:.0f})" if row["name"] == "configure" \
-            else f"{best / 1e6:.2f} ({median / 1e6:.2f})"
-        print(f"{row['name'] + ', ' + row['precision']:36}{cell:>15}")
-    bench_empirical.show(report["empirical"])
-    bench_engagements.show(report["engagements"])
+def facts(report: dict[str, Any]) -> str:
+    """What was measured where."""
+    machine, parts = report["machine"], []
+    for environment, version in report["versions"].items():
+        parts.append(f"{environment}: " + ", ".join(f"{name} {value}" for name, value in version.items()))
+    parts += [f"skipped, {environment}: {reason}" for environment, reason in report["skipped"].items()]
+    return (f"{machine['processor']}, {machine['cores']} cores, load {machine['load']:.1f} when it began; commit "
+            f"{report['commit']}. " + "; ".join(parts) + ".")
+
+
+def tables(report: dict[str, Any]) -> list[Table]:
+    """All that was measured."""
+    found = [Table("machine", "Where", ["machine and versions"], [[facts(report)]])]
+    if "traced" in report:
+        found += [*traced_tables(report), *bench_core.tables(report["scalar"], report["waves"]),
+                  *bench_empirical.tables(report["empirical"]), *bench_engagements.tables(report["engagements"])]
+    return found + bench_fronts.tables(report["fronts"])
+
+
+def figures(report: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Everything that `cargo xtask bench compare` compares, by name."""
+    found = {}
+    for name, operations in report.get("traced", {"million_per_s": {}})["million_per_s"].items():
+        for operation, values in operations.items():
+            found[f"traced / {name} / {operation}"] = {"unit": "million/s", "better": "more", **values}
+    for row in report.get("scalar", []):
+        found[f"core / {row['precision']} / {row['name']}"] = {"unit": "1/s", "better": "more", **row["per_s"]}
+    for row in report.get("waves", []):
+        found[f"waves / {row['name']} / {row['components']}"] = {"unit": "1/s", "better": "more", **row["per_s"]}
+    for row in report.get("empirical", []):
+        found[f"empirical / w* = {row['w']} / {row['name']}"] = {"unit": "s", "better": "less", **row["seconds"]}
+    for row in report.get("engagements", []):
+        for kind, times in (("growth", "seconds"), ("race", "exact")):
+            if kind in row:
+                case = ", ".join(f"{key} {value}" for key, value in row[kind].items())
+                found[f"{kind} / {case}"] = {"unit": "s", "better": "less", **row[times]}
+    return found | bench_fronts.figures(report["fronts"])
 
 
 def main() -> None:
     """Measures, prints and writes."""
     parser = argparse.ArgumentParser(prog="cargo xtask bench", description=__doc__.splitlines()[0])
+    parser.add_argument("topic", nargs="?", choices=["fronts"], help="only run time against error")
     parser.add_argument("--quick", action="store_true", help="a smoke run: few pairs, one round")
     parser.add_argument("--rounds", type=int, default=3, help="turns of each environment (default: 3)")
     output = ROOT / "out/bench.json"
     parser.add_argument("--output", type=Path, default=output, help="(default: out/bench.json)")
+    parser.add_argument("--docs", action="store_true", help="also renew tables and picture of docs/benchmarks.md")
     arguments = parser.parse_args()
     rounds, passes, pairs, repeats = arguments.rounds, 10, 4_000_000, 9
     if arguments.quick:
         rounds, passes, pairs, repeats = 1, 3, 100_000, 1
 
-    report = {"commit": commit(), "machine": machine(), "traced": traced(rounds, passes, pairs),
-              "scalar": core("throughput", repeats), "empirical": core("empirical", repeats),
-              "engagements": core("engagements", repeats)}
-    report["ratios"] = ratios(report["traced"]["million_per_s"])
-    show(report)
+    report: dict[str, Any] = {"commit": commit(), "machine": machine()}
+    if arguments.topic:
+        skipped = {environment: reason for environment in BSDFS if (reason := why_not(environment))}
+        report |= {"skipped": skipped, "versions": {}}
+    else:
+        report["traced"] = traced(rounds, passes, pairs)
+        skipped = report["traced"]["skipped"]
+        report |= {"skipped": skipped, "versions": report["traced"]["versions"], "scalar": core("throughput", repeats),
+                   "waves": core("wave_sums", repeats), "empirical": core("empirical", repeats),
+                   "engagements": core("engagements", repeats)}
+        report["ratios"] = ratios(report["traced"]["million_per_s"])
+    report["fronts"] = bench_fronts.measure(arguments.quick, rounds, skipped)
+    report["figures"] = figures(report)
+    show(tables(report))
     arguments.output.parent.mkdir(parents=True, exist_ok=True)
     arguments.output.write_text(json.dumps(report, indent=1) + "\n")
-    print(f"\nwritten: {arguments.output}")
+    page = bench_fronts.write(report["fronts"], facts(report), arguments.docs)
+    if arguments.docs:
+        write_page(tables(report))
+    print(f"\nwritten: {arguments.output}, {page}")
 
 
 if __name__ == "__main__":

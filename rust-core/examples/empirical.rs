@@ -1,7 +1,7 @@
 //! Speed of the empirical model beside the full one, as lines of JSON; `validation/bench.py` runs it.
 //!
-//! `cargo run --release -p prob-water --example empirical [-- REPEATS]`: every figure is the best of `REPEATS` (5 unless
-//! told), all in turn, on one thread.
+//! `cargo run --release -p prob-water --example empirical [-- REPEATS]`: every figure is measured `REPEATS` times (5
+//! unless told), all in turn, on one thread.
 
 use prob_water::batch::Rows;
 use prob_water::{Across, EmpiricalLobe, Engagement, Ensemble, Parameters, Scalar, Surface, Table, Wind};
@@ -85,16 +85,20 @@ fn main() {
             ("configure", 1, Box::new(move || _ = black_box(EmpiricalLobe::new(&water, table)))),
             ("configure, slopes", 1, Box::new(move || _ = black_box(EmpiricalLobe::new(&slopes, table)))),
         ];
-        let mut best = vec![f64::INFINITY; candidates.len()];
-        for _ in 0..=repeats {
-            for (best, (_, count, run)) in best.iter_mut().zip(&mut candidates) {
+        // The first round warms up.
+        let mut seconds = vec![vec![]; candidates.len()];
+        for round in 0..=repeats {
+            for (seconds, (_, count, run)) in seconds.iter_mut().zip(&mut candidates) {
                 let start = Instant::now();
                 run();
-                *best = best.min(start.elapsed().as_secs_f64() / *count as f64);
+                if round > 0 {
+                    seconds.push(start.elapsed().as_secs_f64() / *count as f64);
+                }
             }
         }
-        for ((name, ..), seconds) in candidates.iter().zip(best) {
-            println!(r#"{{"w": {w}, "name": "{name}", "seconds": {seconds:e}}}"#);
+        for ((name, ..), seconds) in candidates.iter().zip(seconds) {
+            let seconds: Vec<_> = seconds.iter().map(|s| format!("{s:e}")).collect();
+            println!(r#"{{"w": {w}, "name": "{name}", "seconds": [{}]}}"#, seconds.join(", "));
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What is off costs nothing: the same evaluations by code that looks at the switches, and by code compiled without the
-//! feature. `validation/bench_off.py` counts their instructions.
+//! What is off costs nothing: the same evaluations with a term, by code that looks at its switch and finds it off, and by
+//! code compiled without it. `validation/bench_off.py` counts their instructions.
 //!
-//! `cargo run --release -p prob-water --example off -- CASE switched|without COUNT`
+//! `cargo run --release -p prob-water --example off -- CASE with|switched|without COUNT`
 
 use prob_water::brdf::up;
-use prob_water::{Lobe, Parameters, Wind};
+use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Wind};
 use std::hint::black_box;
 
 /// The lobe with switches that the compiler knows.
@@ -36,19 +36,31 @@ fn run(count: usize, eval: impl Fn([f32; 3], [f32; 3]) -> f32) {
 
 fn main() {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
-    let [case, code, count] = &arguments[..] else { panic!("CASE switched|without COUNT") };
+    let [case, code, count] = &arguments[..] else { panic!("CASE with|switched|without COUNT") };
     let count = count.parse().expect("COUNT is a number");
     // A wind in force whose bound is off.
     let mut parameters = Parameters { wind: Wind::FrictionVelocity(24.0), ..Parameters::default() };
+    let on = code == "with";
     match case.as_str() {
-        "whitecaps" => parameters.whitecaps = false,
+        "whitecaps" => parameters.whitecaps = on,
         "no_wind_for_whitecaps" => parameters.wind = Wind::FrictionVelocity(0.0),
-        "shadowing" => parameters.shadowing = false,
-        "gram_charlier" => parameters.gram_charlier = false,
+        "shadowing" => parameters.shadowing = on,
+        "gram_charlier" => parameters.gram_charlier = on,
+        // These are off unless asked for.
+        "exact_fresnel" if on => parameters.fresnel = Fresnel::Exact,
+        "as_printed" if on => parameters.readings = Readings::AsPrinted,
+        "tilt_angles" if !on => parameters.slope_measure = SlopeMeasure::Slope,
+        "visible_bound" => parameters.wind = Wind::FrictionVelocity(4.0),
+        "exact_fresnel" | "as_printed" | "tilt_angles" => {}
         _ => panic!("{case}"),
     }
-    let lobe: Lobe<f32> = black_box(parameters.configure().expect("the parameters are valid").lobe.cast());
-    if code == "switched" {
+    let mut lobe: Lobe<f32> = parameters.configure().expect("the parameters are valid").lobe.cast();
+    if case == "visible_bound" && !on {
+        assert!(lobe.facets.bounded);
+        lobe.facets.bounded = false;
+    }
+    let lobe = black_box(lobe);
+    if code != "without" {
         run(count, |i, o| lobe.eval(i, o, up()));
         return;
     }

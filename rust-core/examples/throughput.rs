@@ -1,7 +1,7 @@
-//! Throughput of the scalar core on one thread, as lines of JSON; `validation/bench.py` runs it.
+//! Throughput of the core on one thread, of scalars and of lanes, as lines of JSON; `validation/bench.py` runs it.
 //!
 //! `cargo run --release -p prob-water --example throughput [-- REPEATS]`: every figure is measured
-//! `REPEATS` times (5 unless told), interleaved with the others, and given as the best and the median.
+//! `REPEATS` times (5 unless told), interleaved with the others.
 
 use prob_water::batch::Columns;
 use prob_water::lanes::Level;
@@ -48,11 +48,9 @@ fn main() {
             }
         }
     }
-    for (mut rates, (name, precision, _)) in rates.into_iter().zip(candidates) {
-        rates.sort_by(f64::total_cmp);
-        let (best, median) = (rates[rates.len() - 1], rates[rates.len() / 2]);
-        let speed = format!(r#""best_per_s": {best:.0}, "median_per_s": {median:.0}"#);
-        println!(r#"{{"name": "{name}", "precision": "{precision}", {speed}}}"#);
+    for (rates, (name, precision, _)) in rates.into_iter().zip(candidates) {
+        let rates: Vec<_> = rates.iter().map(|rate| rate.round()).collect();
+        println!(r#"{{"name": "{name}", "precision": "{precision}", "per_s": {rates:?}}}"#);
     }
 }
 

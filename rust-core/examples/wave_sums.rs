@@ -1,100 +1,102 @@
-//! Speed of wave sums on one thread, as lines of JSON; `validation/bench.py` runs it.
+//! Sums of waves over places, one thread, as lines of JSON; `validation/bench.py` runs it.
 //!
-//! `cargo run --release -p prob-water --example wave_sums [-- REPEATS]`: components per second of height, slopes and
-//! acceleration over random places within 10 km, by a plain loop with the platform's sine and cosine, by the float64
-//! reference and in lanes; the best of `REPEATS` (5 unless told), all in turn.
+//! `cargo run --release -p prob-water --example wave_sums [-- REPEATS]`: components per second, heights, slopes and
+//! accelerations of every place included, all candidates in turn, each `REPEATS` times (5 unless told).
 
 use prob_water::lanes::Level;
 use prob_water::surface::Point;
-use prob_water::{Draws, Ensemble, Parameters, RealisedSurface, WaveSums};
+use prob_water::waves::{Component, Draws, Numbers};
+use prob_water::{Parameters, RealisedSurface, Surface, WaveSums, Wind};
 use std::hint::black_box;
 use std::time::Instant;
 
-const WAVES: u32 = 512;
+/// Places of a pass.
 const PLACES: usize = 2000;
-/// s.
-const TIME: f64 = 3600.0;
 
-/// What is timed: its name and the run.
-type Candidate<'a> = (String, Box<dyn Fn(&mut [Point]) + 'a>);
+/// What is timed: its name, and a pass over all places that returns the sum of the heights.
+type Candidate<'a> = (String, Box<dyn Fn() -> f64 + 'a>);
 
 fn main() {
     let repeats: usize = std::env::args().nth(1).map_or(5, |n| n.parse().expect("REPEATS is a number"));
-    let water = Parameters { components: WAVES, ..Parameters::default() }.configure().expect("valid parameters");
-    let sea = Ensemble { draws: Draws::Stratified, ..Ensemble::new(&water) };
-    let waves: Vec<_> = sea.components(0).1.collect();
-    let surface = RealisedSurface::new(waves.iter().copied(), TIME);
-    let sums = WaveSums::new(&surface);
-    let places: Vec<_> = (0..PLACES)
-        .map(|n| [0.618_034, 0.754_878].map(|ratio| 10e3 * (n as f64 * ratio).fract()))
-        .collect();
-
-    // Amplitude, phase, wave numbers along x and y, frequency.
-    let kept: Vec<[f64; 5]> = waves
-        .iter()
-        .map(|w| {
-            let (sin, cos) = w.azimuth.sin_cos();
-            let phase = w.phase + w.frequency * TIME;
-            [w.amplitude, phase, w.wave_number * cos, w.wave_number * sin, w.frequency]
-        })
-        .collect();
-    let platform = |points: &mut [Point]| {
-        for (place, point) in places.iter().zip(points) {
-            *point = plain_sum(&kept, *place);
-        }
-    };
-    let reference = |points: &mut [Point]| {
-        for (place, point) in places.iter().zip(points) {
-            *point = surface.point(*place);
-        }
-    };
-
-    let mut candidates: Vec<Candidate> = vec![
-        ("platform, float64".into(), Box::new(platform)),
-        ("reference, float64".into(), Box::new(reference)),
-    ];
-    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
-        let (sums, places) = (&sums, &places);
-        candidates.push((
-            format!("lanes, {}", level.name()),
-            Box::new(move |points| sums.points_on(level, places, points)),
-        ));
-    }
-
-    let mut best = vec![f64::INFINITY; candidates.len()];
-    let mut results = vec![vec![Point::default(); PLACES]; candidates.len()];
-    for _ in 0..=repeats {
-        for (k, (_, run)) in candidates.iter().enumerate() {
-            let start = Instant::now();
-            run(black_box(&mut results[k]));
-            best[k] = best[k].min(start.elapsed().as_secs_f64());
-        }
-    }
-    for (k, (name, _)) in candidates.iter().enumerate() {
-        let rate = (WAVES as usize * PLACES) as f64 / best[k];
-        let error = |of: fn(&Point) -> f64| {
-            let pairs = || results[k].iter().zip(&results[1]);
-            let worst = pairs().map(|(a, b)| (of(a) - of(b)).abs()).fold(0.0, f64::max);
-            let size = (pairs().map(|(_, b)| of(b).powi(2)).sum::<f64>() / PLACES as f64).sqrt();
-            worst / size
+    for components in [32, 512] {
+        let water = Parameters {
+            wind: Wind::FrictionVelocity(8.0),
+            surface: Surface::Instance,
+            footprint: 0.15,
+            components,
+            ..Parameters::default()
         };
-        println!(
-            r#"{{"name": "{name}", "waves": {WAVES}, "components_per_s": {rate:.0}, "height_error": {:.2e}, "slope_error": {:.2e}}}"#,
-            error(|p| p.height),
-            error(|p| p.slope[0]),
-        );
+        let water = water.configure().expect("the parameters are valid");
+        let waves: Vec<_> = water.waves().components(Numbers::new(Draws::Stratified, 1, 0)).collect();
+        let sea = RealisedSurface::new(waves.iter().copied(), 0.0);
+        let places: Vec<[f64; 2]> =
+            (0..PLACES).map(|n| [0.731 * n as f64 % 97.0, 0.419 * n as f64 % 89.0]).collect();
+
+        let lanes = WaveSums::new(&sea);
+        // Another way to sum the same waves is one more line here, and `validation/bench_core.py` holds it against its
+        // gate.
+        let mut candidates: Vec<Candidate> = vec![
+            ("libm".into(), {
+                let (waves, places) = (plain(&waves), &places);
+                Box::new(move || places.iter().map(|place| libm_sum(&waves, black_box(*place))[0]).sum())
+            }),
+            ("point".into(), Box::new(|| places.iter().map(|place| black_box(sea.point(*place)).height).sum())),
+        ];
+
+        for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+            let (lanes, places) = (&lanes, &places);
+            candidates.push((
+                format!("lanes, {}", level.name()),
+                Box::new(move || {
+                    let mut points = vec![Point::default(); PLACES];
+                    lanes.points_on(level, black_box(places), &mut points);
+                    points.iter().map(|point| point.height).sum()
+                }),
+            ));
+        }
+
+        let mut seconds = vec![vec![]; candidates.len()];
+        let mut sums = vec![0.0; candidates.len()];
+        // The first round warms up.
+        for round in 0..=repeats {
+            for (n, (_, pass)) in candidates.iter().enumerate() {
+                let start = Instant::now();
+                sums[n] = black_box(pass());
+                if round > 0 {
+                    seconds[n].push(start.elapsed().as_secs_f64());
+                }
+            }
+        }
+        // Of lanes: 1e-7 of a height of some centimetres, many times.
+        let scale = sums[0].abs() + 1.0;
+        for (n, (name, _)) in candidates.iter().enumerate() {
+            let bound = if name.starts_with("lanes") { 1e-4 } else { 1e-9 };
+            assert!((sums[n] - sums[0]).abs() < bound * scale, "{name} sums other waves");
+            let rates: Vec<_> =
+                seconds[n].iter().map(|s| (PLACES as f64 * f64::from(components) / s).round()).collect();
+            println!(r#"{{"name": "{name}", "components": {components}, "per_s": {rates:?}}}"#);
+        }
     }
 }
 
-/// The sum in a plain loop.
-fn plain_sum(waves: &[[f64; 5]], [x, y]: [f64; 2]) -> Point {
-    let mut point = Point::default();
-    for [a, phase, kx, ky, omega] in waves {
-        let (sin, cos) = (phase + kx * x + ky * y).sin_cos();
-        point.height += a * cos;
-        point.slope[0] -= a * kx * sin;
-        point.slope[1] -= a * ky * sin;
-        point.acceleration -= a * omega * omega * cos;
+/// Wave numbers along x and y, phase, amplitude and squared frequency of every component.
+fn plain(waves: &[Component]) -> Vec<[f64; 5]> {
+    let one = |c: &Component| {
+        let (sin, cos) = c.azimuth.sin_cos();
+        [c.wave_number * cos, c.wave_number * sin, c.phase, c.amplitude, c.frequency * c.frequency]
+    };
+    waves.iter().map(one).collect()
+}
+
+/// Height, slopes and acceleration as one would write them first: a loop with the platform's sine and cosine.
+fn libm_sum(waves: &[[f64; 5]], [x, y]: [f64; 2]) -> [f64; 4] {
+    let mut point = [0.0; 4];
+    for [kx, ky, phase, a, omega2] in waves {
+        let (sin, cos) = (kx * x + ky * y + phase).sin_cos();
+        point[0] += a * cos;
+        point[1] -= a * kx * sin;
+        point[2] -= a * ky * sin;
+        point[3] -= a * omega2 * cos;
     }
-    point
+    black_box(point)
 }

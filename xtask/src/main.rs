@@ -37,7 +37,10 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   sanitize          the C programs under valgrind and with sanitizers, the plugin with the address sanitizer
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
   c-test            compile and run the C programs of rust-core/tests/c
-  bench [OPTIONS]   build, set up the peers and print the throughput table (options of validation/bench.py)
+  bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench.py)
+  bench fronts      only run time against error, the time to 1 % of rendering included
+  bench compare A.json B.json
+                    the ratio of every figure; fails where B is worse than the spreads explain
   bench off         what costs nothing: instructions and kernels of what is switched off
   bench surface     time and memory of the shape at 1, 4 and 16 million vertices (--vertices N ...)
   peer              create .venv-peer and install validation/requirements-peer.txt in it
