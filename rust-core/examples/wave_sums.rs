@@ -40,7 +40,10 @@ fn main() {
                 let (waves, places) = (plain(&waves), &places);
                 Box::new(move || places.iter().map(|place| libm_sum(&waves, black_box(*place))[0]).sum())
             }),
-            ("point".into(), Box::new(|| places.iter().map(|place| black_box(sea.point(*place)).height).sum())),
+            (
+                "point".into(),
+                Box::new(|| places.iter().map(|place| black_box(sea.point(*place)).height).sum()),
+            ),
         ];
 
         for level in Level::ALL.into_iter().filter(|level| level.is_available()) {

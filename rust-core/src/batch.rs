@@ -150,8 +150,7 @@ pub(crate) fn check_rows<T: Scalar>(
         let [x, y, z] = v.map(Scalar::to_f64);
         let refuse = |expected| Err(Error::Row { row: k + 1, column, x, y, z, expected });
         let length = (x * x + y * y + z * z).sqrt();
-        // What is not a number fails this as well.
-        if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+        if length.is_nan() || (length - 1.0).abs() > UNIT_TOLERANCE {
             return refuse("a finite unit vector (to 1e-4)");
         }
         if normals && z <= 0.0 {

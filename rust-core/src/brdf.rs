@@ -5,9 +5,9 @@
 
 use crate::optics::Reflectance;
 use crate::real::{Vec3, Wide, dot, each};
-use crate::{Real, Scalar};
 use crate::shadowing::hidden;
 use crate::slopes::gram_charlier;
+use crate::{Real, Scalar};
 use glam::DVec2;
 
 /// The normal of a flat sea.
@@ -183,12 +183,7 @@ impl<T: Real> Facets<T> {
     }
 
     /// `rho G`, 0 where `n` turns from one of the directions.
-    pub(crate) fn shadowed_reflectance(
-        &self,
-        i: Vec3<T>,
-        o: Vec3<T>,
-        n: impl Into<Option<Vec3<T>>>,
-    ) -> T {
+    pub(crate) fn shadowed_reflectance(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
         let g = self.geometry(i, o, n.into());
         let [ci, cr] = g.cos;
         let zero = T::of(0.0);
@@ -241,7 +236,8 @@ impl<T: Real> Facets<T> {
     #[inline(always)]
     fn visible_bound(&self, g: &Geometry<T>) -> T {
         let ([ci, cr], [i, o]) = (g.cos, g.seen);
-        let (shown_i, shown_o) = (ci + hidden(ci, self.spread_along(i)), cr + hidden(cr, self.spread_along(o)));
+        let (shown_i, shown_o) =
+            (ci + hidden(ci, self.spread_along(i)), cr + hidden(cr, self.spread_along(o)));
         self.bound / T::max(T::max(shown_i * cr, shown_o * ci), T::TINY)
     }
 

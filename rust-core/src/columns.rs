@@ -59,7 +59,13 @@ impl<'a> Columns<'a> {
         self.in_tasks(Level::detect(), lobe, Quantity::Density, pdf)
     }
 
-    fn in_tasks(&self, level: Level, lobe: &Lobe<f32>, value: Quantity, out: &mut [f32]) -> Result<(), Error> {
+    fn in_tasks(
+        &self,
+        level: Level,
+        lobe: &Lobe<f32>,
+        value: Quantity,
+        out: &mut [f32],
+    ) -> Result<(), Error> {
         batch::in_tasks(out, self.to_source[0].len(), |first, out| {
             self.rows(first, out.len()).values(level, lobe, value, out);
         })
@@ -121,6 +127,8 @@ impl Columns<'_> {
     #[inline(always)]
     fn vector<V: Vector>(&self, first: usize, lobe: &Lobe<Lanes<V>>, value: Quantity) -> V {
         let (i, o) = (load(self.to_source, first), load(self.to_observer, first));
+        // Not `map`, whose closure would not be inlined.
+        #[allow(clippy::manual_map)]
         let n = match self.normals {
             Some(n) => Some(load(n, first)),
             None => None,

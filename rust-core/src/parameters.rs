@@ -259,7 +259,7 @@ impl Parameters {
         let [c21, c03] = slopes::skewness(wind);
         let as_printed = self.readings == Readings::AsPrinted;
         let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
-                let slope_measure = self.slope_measure == SlopeMeasure::Slope;
+        let slope_measure = self.slope_measure == SlopeMeasure::Slope;
         let mut facets = Facets {
             cos_wind: 1.0,
             sin_wind: 0.0,

@@ -67,12 +67,7 @@ pub trait Real:
 /// A number with digits to spare beyond those of `T`: for the tilts, whose rounding errors the Gaussian and the
 /// Gram-Charlier polynomial magnify a thousandfold.
 pub trait Wide<T: Real>:
-    Copy
-    + std::fmt::Debug
-    + Neg<Output = Self>
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
+    Copy + std::fmt::Debug + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
     /// The number nearest to `x`.
     fn of(x: f64) -> Self;

@@ -13,9 +13,9 @@
 //! elementary functions is needed, and against the ideal, area-weighted Gaussian of slopes its weight
 //! is at most 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
-use crate::{Real, Scalar};
 use crate::brdf::{Facets, GRAZING, Lobe, Parts, cosine};
 use crate::real::{Vec3, Wide, dot};
+use crate::{Real, Scalar};
 
 /// Keeps the facets' share positive where they hardly reflect.
 const FACET_ALBEDO_FLOOR: f64 = 0.01;
@@ -205,7 +205,8 @@ impl Facets<f64> {
                 let [x, y] = [axis(h[0] / h[2], self.sigma_u), axis(h[1] / h[2], self.sigma_c)];
                 let (tilt, jacobian) = self.tilt(h);
                 let slope_over_tilt = (h[0].hypot(h[1]) / h[2] + 1e-9) / (tilt[0].hypot(tilt[1]) + 1e-9);
-                let density = self.tilt_density(-x, y, (h[2] * h[2]).recip()) * h[2] * jacobian * slope_over_tilt;
+                let density =
+                    self.tilt_density(-x, y, (h[2] * h[2]).recip()) * h[2] * jacobian * slope_over_tilt;
                 wanted.push((density.ln(), 0.5 * (u * u + c * c)));
             }
         }
@@ -226,7 +227,8 @@ impl<T: Real> Lobe<T> {
             Parts { whitecaps: false, .. } => [one, zero],
             Parts { facets: false, .. } => [zero, one],
             _ => {
-                let albedo = T::rounded(self.facets.reflectance.schlick(cos.fine())) + T::of(FACET_ALBEDO_FLOOR);
+                let albedo =
+                    T::rounded(self.facets.reflectance.schlick(cos.fine())) + T::of(FACET_ALBEDO_FLOOR);
                 let facets = self.smooth_fraction * albedo;
                 let whitecaps = T::of(std::f64::consts::PI) * self.whitecap_brdf * self.whitecap_fraction;
                 {
@@ -267,7 +269,6 @@ impl<T: Real> Lobe<T> {
         }
         T::select(T::lt(zero, ci) & T::lt(zero, cr), pdf, zero)
     }
-
 }
 
 impl<T: Scalar> Lobe<T> {

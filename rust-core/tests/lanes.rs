@@ -51,18 +51,20 @@ fn seas() -> Vec<Parameters> {
 
 fn direction(rng: &mut StdRng) -> [f64; 3] {
     // Elevations down to 1e-4 degrees, evenly in their logarithm from 10 degrees on.
-    let elevation: f64 = if rng.random() {
-        10f64.powf(rng.random_range(-4.0..1.0))
-    } else {
-        rng.random_range(0.0..90.0)
-    };
+    let elevation: f64 =
+        if rng.random() { 10f64.powf(rng.random_range(-4.0..1.0)) } else { rng.random_range(0.0..90.0) };
     let (z, r) = elevation.to_radians().sin_cos();
     let phi = rng.random_range(0.0..TAU);
     [r * phi.cos(), r * phi.sin(), z]
 }
 
 /// A source, and an observer that facets of tilts with U^2 + C^2 < 55 show it; with its wave normal, or `None`.
-fn row(sea: &Parameters, [sigma_u, sigma_c]: [f64; 2], wavy: bool, rng: &mut StdRng) -> Option<[[f64; 3]; 3]> {
+fn row(
+    sea: &Parameters,
+    [sigma_u, sigma_c]: [f64; 2],
+    wavy: bool,
+    rng: &mut StdRng,
+) -> Option<[[f64; 3]; 3]> {
     let i = direction(rng);
     let (n, tangents) = if wavy {
         let [x, y] = [(); 2].map(|()| rng.random_range(-0.4..0.4f64));
@@ -163,7 +165,10 @@ fn lanes_follow_float64() {
             assert!(most < 1e-4 && median < 1e-5, "scalar float32: {most:e}, {median:e}; {sea:?}");
         }
     }
-    println!("worst and median: level {:.1e} {:.1e}, waves {:.1e} {:.1e}", worst[0][0], worst[0][1], worst[1][0], worst[1][1]);
+    println!(
+        "worst and median: level {:.1e} {:.1e}, waves {:.1e} {:.1e}",
+        worst[0][0], worst[0][1], worst[1][0], worst[1][1]
+    );
 }
 
 #[test]
@@ -223,7 +228,9 @@ fn finite_and_non_negative() {
     let mut rng = StdRng::seed_from_u64(4);
     let odd: Vectors = [0.0f32, -0.0, 1e-45, -1e-45, 1e-38, 1e-20, 1e-9, 3e-4]
         .into_iter()
-        .flat_map(|z| [[1.0, 0.0, z], [-1.0, 0.0, z], [0.0, -1.0, z], [0.6, 0.8, z], [z, z, 1.0], [z, z, -1.0]])
+        .flat_map(|z| {
+            [[1.0, 0.0, z], [-1.0, 0.0, z], [0.0, -1.0, z], [0.6, 0.8, z], [z, z, 1.0], [z, z, -1.0]]
+        })
         .chain((0..60).map(|_| direction(&mut rng).map(|x| x as f32)))
         .collect();
     let pairs: Vec<_> = odd.iter().flat_map(|i| odd.iter().map(move |o| (*i, *o))).collect();

@@ -58,13 +58,7 @@ fn configuration() {
         let wind = Wind::Speed { speed: 20.0 * u[0], height: 10.0 };
         let sea = Parameters { wind, footprint: u[1] + 1e-3, ..Parameters::default() }.configure().unwrap();
         let f = &sea.lobe.facets;
-        vec![
-            sea.wind.friction_velocity,
-            f.sigma_u,
-            f.sigma_c,
-            f.proposal_u,
-            sea.whitecap_fraction,
-        ]
+        vec![sea.wind.friction_velocity, f.sigma_u, f.sigma_c, f.proposal_u, sea.whitecap_fraction]
     });
 }
 

@@ -45,8 +45,7 @@ fn sums_follow_the_reference() {
                 |p: &Point| p.acceleration,
             ] {
                 let rms = (exact.iter().map(|p| of(p).powi(2)).sum::<f64>() / places.len() as f64).sqrt();
-                let worst =
-                    exact.iter().zip(&points).map(|(a, b)| (of(a) - of(b)).abs()).fold(0.0, f64::max);
+                let worst = exact.iter().zip(&points).map(|(a, b)| (of(a) - of(b)).abs()).fold(0.0, f64::max);
                 assert!(worst < 2e-6 * rms, "{level:?}, {count} components: {:e}", worst / rms);
             }
         }

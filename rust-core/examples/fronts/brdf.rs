@@ -50,7 +50,8 @@ fn flat(repeats: usize, pairs: &[[Vec3<f32>; 2]], directory: &Path) {
     point("brdf", "float64, scalar", "", 0.0, &per_pair(&times[0]));
     point("brdf", "float32, scalar", "", error(&out, &reference), &per_pair(&times[1]));
 
-    let coordinates = |side: usize| [0, 1, 2].map(|k| pairs.iter().map(|pair| pair[side][k]).collect::<Vec<_>>());
+    let coordinates =
+        |side: usize| [0, 1, 2].map(|k| pairs.iter().map(|pair| pair[side][k]).collect::<Vec<_>>());
     let (i, o) = (coordinates(0), coordinates(1));
     let [i, o] = [&i, &o].map(|v| v.each_ref().map(Vec::as_slice));
     let columns = Columns::new(i, o, None).expect("they are unit vectors");

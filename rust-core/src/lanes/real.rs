@@ -64,7 +64,7 @@ const ATAN: [f32; 8] = [
 ];
 
 /// Coefficients of `sin(2 pi t)/t` in t^2 up to a quarter turn, minimax for the relative error: 5e-9.
-const SINE: [f32; 5] = [6.283_185_5, -41.341_68, 81.602_234, -76.574_997, 39.710_934];
+const SINE: [f32; 5] = [6.283_185_5, -41.341_68, 81.602_234, -76.575, 39.710_934];
 
 impl<V: Vector> Lanes<V> {
     /// `x` in every lane.
