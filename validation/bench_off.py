@@ -72,7 +72,8 @@ TERMS = [
          timed="whitecaps of exact means, w* = 24"),
     Term("the same, w* = 8", "`whitecaps = false`", "off here", timed="whitecaps of exact means, w* = 8"),
     Term("the ensemble's table", "any other `surface`", "a wind that raises no waves", timed="table of the ensemble"),
-    Term("turning into the wind's axes", "", NEVER),
+    Term("turning into the wind's axes", "", "a wind from azimuth 0; traced, along any axis", "oblique_wind",
+         ({"wind_direction": 37.0}, {})),
 ]
 
 

@@ -3,7 +3,6 @@
 //!
 //! `cargo run --release -p prob-water --example off -- CASE with|switched|without COUNT`
 
-use prob_water::brdf::up;
 use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Wind};
 use std::hint::black_box;
 
@@ -51,7 +50,8 @@ fn main() {
         "as_printed" if on => parameters.readings = Readings::AsPrinted,
         "tilt_angles" if !on => parameters.slope_measure = SlopeMeasure::Slope,
         "visible_bound" => parameters.wind = Wind::FrictionVelocity(4.0),
-        "exact_fresnel" | "as_printed" | "tilt_angles" => {}
+        "oblique_wind" if on => parameters.wind_direction = 37.0,
+        "exact_fresnel" | "as_printed" | "tilt_angles" | "oblique_wind" => {}
         _ => panic!("{case}"),
     }
     let mut lobe: Lobe<f32> = parameters.configure().expect("the parameters are valid").lobe.cast();
@@ -61,14 +61,14 @@ fn main() {
     }
     let lobe = black_box(lobe);
     if code != "without" {
-        run(count, |i, o| lobe.eval(i, o, up()));
+        run(count, |i, o| lobe.eval(i, o, None));
         return;
     }
     match case.as_str() {
         "whitecaps" | "no_wind_for_whitecaps" => {
-            run(count, |i, o| without!(lobe, whitecaps).eval(i, o, up()));
+            run(count, |i, o| without!(lobe, whitecaps).eval(i, o, None));
         }
-        "shadowing" => run(count, |i, o| without!(lobe, shadowing).eval(i, o, up())),
-        _ => run(count, |i, o| without!(lobe, gram_charlier).eval(i, o, up())),
+        "shadowing" => run(count, |i, o| without!(lobe, shadowing).eval(i, o, None)),
+        _ => run(count, |i, o| without!(lobe, gram_charlier).eval(i, o, None)),
     }
 }

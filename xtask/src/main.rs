@@ -29,7 +29,8 @@ The commands of prob-water, each run as `cargo xtask <command>`:
                     build the command and draw the report's figures into out/report/ (options of validation/figures.py)
   errors [--quick]  write docs/error-budget.md: every stage in float64 and float32 against 50 digits
   test              run every check: Rust, C, plugin, Python, style
-  verify            the long campaigns: more samples, the live peer, the table docs/float32.md
+  verify            the long campaigns: more samples, the live peer, stress, fuzz and
+                    sanitize below, the tables docs/float32.md and docs/error-budget.md
   stress [--count N] [--seconds S] [--seed K]
                     adversarial and random seas and directions against every lobe (1e9 evaluations unless told)
   fuzz [TARGET] [--seconds S]

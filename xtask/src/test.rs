@@ -114,7 +114,8 @@ pub fn verify() -> Result<()> {
     util::run(
         util::command(setup::python()).arg("validation/float32_errors.py"),
         "validation/float32_errors.py",
-    )
+    )?;
+    errors::errors(&[])
 }
 
 fn valgrind() -> Result<Outcome> {

@@ -71,7 +71,7 @@ fn main() -> ExitCode {
     };
     let start = Instant::now();
     println!("seed {}, {} threads", options.seed, rayon::current_num_threads());
-    println!("{:<22}{:>16}{:>10}{:>9}  what", "part", "evaluations", "violations", "time");
+    println!("{:<22}{:>16}{:>11}{:>9}  what", "part", "evaluations", "violations", "time");
     let mut failed = false;
     for part in &PARTS {
         if options.part.as_ref().is_some_and(|name| name != part.name) {

@@ -126,9 +126,9 @@ impl Tally {
     pub fn print(&self, part: &str, time: Duration) {
         let seconds = time.as_secs_f64();
         let (evaluations, violations) = (self.evaluations(), self.violations());
-        println!("{part:<22}{evaluations:>16}{violations:>10}{seconds:>7.1} s");
+        println!("{part:<22}{evaluations:>16}{violations:>11}{seconds:>7.1} s");
         for (kind, count) in &self.kinds {
-            println!("{:<22}{count:>16}{:>21}{kind}", "", "");
+            println!("{:<22}{count:>16}{:>22}{kind}", "", "");
         }
         for (name, errors) in &self.errors {
             let (median, worst, count) = (errors.median(), errors.worst, errors.count());
