@@ -86,6 +86,9 @@ def main() -> int:
         print(f"bench compare: {error}", file=sys.stderr)
         return 2
     rows = compare(a, b, arguments.slack)
+    if not rows:
+        print("bench compare: the two runs have no figure in common", file=sys.stderr)
+        return 2
     print("ratios of times and errors, and of rates the other way round: above 1 the second run is worse\n")
     print(f"{'':70}{'best':>8}{'median':>8}{'noise':>8}")
     for row in rows:
@@ -100,6 +103,8 @@ def main() -> int:
     if rows:
         print(f"\nmiddle of all ratios: {medians[len(medians) // 2]:.2f} (far from 1: another machine, or other work on it)")
     print(f"{len(found)} of {len(rows)} figures worse than noise explains" + "".join(f"\n  {name}" for name in found))
+    if missing := sum(name not in b for name in a):
+        print(f"{missing} figures of the first run were not measured in the second: nothing is known of them")
     return 1 if found else 0
 
 

@@ -74,7 +74,7 @@ GROUPS = [
             "as it is", "the Gaussian far out", float64=(5e-15, 5e-12), float32=(1e-7, 6e-7)),
         row("gram_charlier", "Gram-Charlier p_ks", "78", "absolute, with U, C given",
             "U^2 + C^2 < 55, w* 0 to 238.65", "as it is, on the lobe without it",
-            "cancelling powers of U and C, up to 130; so the BRDF forms it in float64 always",
+            "cancelling powers of U and C, up to 130; so scalars form it in float64 always",
             float64=(5e-15, 1e-13), float32=(2e-6, 5e-5)),
         row("schlick", "Schlick's formula", "62-63", "relative", "n 1.1 to 2, to 89.9999 degrees", "as it is",
             "1 - cos, to the fifth power", float64=(5e-16, 3e-15), float32=(2e-7, 1.5e-6)),

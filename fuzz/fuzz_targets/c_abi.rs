@@ -30,6 +30,7 @@ enum Call<'a> {
     Summary(u8),
     Eval(u8, Rows),
     EvalSingle(u8, Rows),
+    EvalColumns(u8, Rows),
     Pdf(u8, Rows),
     Sample(u8, Rows),
     Estimate(u8, Rows),
@@ -180,6 +181,19 @@ unsafe fn run(call: &Call, options: &mut [*mut Options; HELD], seas: &mut [*mut 
                 let n = if rows.nulls & 4 != 0 { null() } else { n.as_ptr() };
                 let (i, o, out) = (i.as_ptr(), o.as_ptr(), f.as_mut_ptr());
                 let status = answered(prob_water_eval_f32(seas[at(which)], rows.count, i, o, n, out));
+                written(status, &f.into_iter().map(f64::from).collect::<Vec<_>>());
+            }
+            Call::EvalColumns(which, rows) => {
+                let mut f = vec![UNTOUCHED as f32; rows.count];
+                let columns = rows.singles().map(|v| [0, 1, 2].map(|k| v.iter().skip(k).step_by(3).copied().collect()));
+                let pointers = columns.each_ref().map(|v| v.each_ref().map(|x: &Vec<f32>| x.as_ptr()));
+                let [i, o, mut n] = pointers;
+                if rows.nulls & 8 != 0 {
+                    n[1] = null();
+                }
+                let normals = if rows.nulls & 4 != 0 { null() } else { n.as_ptr() };
+                let (i, o, out) = (i.as_ptr(), o.as_ptr(), f.as_mut_ptr());
+                let status = answered(prob_water_eval_columns(seas[at(which)], rows.count, i, o, normals, out));
                 written(status, &f.into_iter().map(f64::from).collect::<Vec<_>>());
             }
             Call::Pdf(which, rows) => {

@@ -6,13 +6,15 @@ use libfuzzer_sys::fuzz_target;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-/// Where the rows lie for the command; one file for every process.
-static FILE: LazyLock<PathBuf> =
-    LazyLock::new(|| std::env::temp_dir().join(format!("prob-water-fuzz-{}.csv", std::process::id())));
+/// Where the rows lie for the command: beside the fuzzer itself, one file for every process.
+static FILE: LazyLock<PathBuf> = LazyLock::new(|| {
+    let fuzzer = std::env::current_exe().expect("the fuzzer knows where it lies");
+    fuzzer.with_extension("csv")
+});
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((choice, rows)) = bytes.split_first() else { return };
-    std::fs::write(&*FILE, rows).expect("the folder of temporary files can be written");
+    std::fs::write(&*FILE, rows).expect("the fuzzer's folder can be written");
     let file = FILE.to_str().expect("a plain name");
     let mut arguments = vec!["prob-water", "brdf", file, "--output", "/dev/null"];
     // The surfaces that are quick to configure.

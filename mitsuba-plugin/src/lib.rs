@@ -13,7 +13,7 @@ use std::path::Path;
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
-    /// The coefficients that the traced variants evaluate: `prob_water::Lobe<f32>` and the polynomial of
+    /// The coefficients that the traced variants evaluate: those of `prob_water::Lobe<f64>`, and the polynomial of
     /// the shadowing function.
     struct Coefficients {
         cos_wind: f64,

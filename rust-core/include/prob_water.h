@@ -123,7 +123,7 @@ enum ProbWaterStatus prob_water_eval_f32(const struct ProbWater *sea,
                                          float *f);
 
 // `prob_water_eval_f32` of directions that lie coordinate by coordinate: three arrays of `rows` numbers each, x, y and z.
-// The fastest form: nothing has to be rearranged for the processor's vectors.
+// The fastest form: nothing has to be rearranged for the processor's vectors. Not for a sea with surface "empirical".
 //
 // # Safety
 // `sea` comes from `prob_water_configure`; the vectors are three pointers to `rows` numbers, `f` holds `rows` numbers.

@@ -43,6 +43,9 @@
 //! | [`FacetTable`] | facets where the footprint changes from place to place |
 //! | [`grid`], [`mesh`] | a realised sea as triangles |
 //!
+//! Beside them, of no equation: [`real`], the number types of the closed form, [`lanes`], the processor's vectors as one of
+//! them, [`batch`], many rows at once, and [`wave_sums`], many places.
+//!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
 

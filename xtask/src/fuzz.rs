@@ -38,10 +38,14 @@ pub fn fuzz(arguments: &[String]) -> Result<()> {
     }
     let seconds: u32 =
         seconds.parse().with_context(|| format!("--seconds {seconds} is not a whole number"))?;
-    if let Err(reason) = build() {
+    if seconds == 0 {
+        bail!("--seconds 0 would never end: at least 1");
+    }
+    if let Err(reason) = can_instrument() {
         println!("fuzz: skipped: {reason:#}");
         return Ok(());
     }
+    build()?;
     let seeds = util::root().join("target/fuzz-seeds");
     lay_out(&seeds)?;
     for (name, longest) in TARGETS.iter().filter(|(name, _)| wanted.is_empty() || wanted.contains(name)) {
@@ -56,8 +60,20 @@ fn host() -> Result<String> {
     Ok(host.into())
 }
 
-fn build() -> Result<()> {
+/// Whether there is a C++ compiler, and a Rust one that passes the instrumentation on, tried on an empty library.
+fn can_instrument() -> Result<()> {
     util::cxx()?;
+    let directory = util::root().join("target/fuzz-probe");
+    util::create_dir(&directory)?;
+    let empty = directory.join("empty.rs");
+    fs::write(&empty, "pub fn nothing() {}\n")
+        .with_context(|| format!("cannot write {}", empty.display()))?;
+    let mut rustc = util::command(util::program("RUSTC", "rustc"));
+    rustc.args(INSTRUMENTATION.split_whitespace()).args(["--crate-type", "lib", "--out-dir"]);
+    util::output(rustc.arg(&directory).arg(&empty), "instrumenting with this Rust compiler").map(drop)
+}
+
+fn build() -> Result<()> {
     println!("fuzz: building (some minutes the first time)");
     // With a target named, build scripts and macros are not instrumented.
     util::run(

@@ -35,6 +35,14 @@ unsafe extern "C" {
         normals: *const c_float,
         f: *mut c_float,
     ) -> i32;
+    pub fn prob_water_eval_columns(
+        sea: *const Sea,
+        rows: usize,
+        to_source: *const *const c_float,
+        to_observer: *const *const c_float,
+        normals: *const *const c_float,
+        f: *mut c_float,
+    ) -> i32;
     pub fn prob_water_pdf(
         sea: *const Sea,
         rows: usize,

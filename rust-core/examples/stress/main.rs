@@ -92,7 +92,10 @@ fn options() -> Result<Options, String> {
     let mut words = std::env::args().skip(1);
     while let Some(flag) = words.next() {
         let value = words.next().ok_or(format!("{flag} needs a value"))?;
-        let number = || value.parse::<f64>().map_err(|_| format!("{flag} {value} is not a number"));
+        let number = || {
+            let number = value.parse().ok().filter(|x: &f64| *x > 0.0);
+            number.ok_or(format!("{flag} {value} is not a number above 0"))
+        };
         let whole = || value.parse::<u64>().map_err(|_| format!("{flag} {value} is not a whole number"));
         match flag.as_str() {
             "--count" => options.count = number()?,

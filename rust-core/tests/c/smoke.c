@@ -107,6 +107,12 @@ int main(void) {
         float many[3];
         check(prob_water_eval_columns(sea, 3, source, observer, NULL, many) == PROB_WATER_STATUS_OK, "columns");
         check(fabs(many[0] / f[0] - 1) < 1e-5 && fabs(many[1] / f[1] - 1) < 1e-5 && many[2] == 0, "columns agree");
+        {
+            float zeros[3] = {0, 0, 0}, ones[3] = {1, 1, 1}, again[3];
+            const float *normal[3] = {zeros, zeros, ones};
+            check(prob_water_eval_columns(sea, 3, source, observer, normal, again) == PROB_WATER_STATUS_OK, "column normals");
+            check(fabs(again[1] / many[1] - 1) < 1e-5 && again[2] == 0, "upright normals change nothing");
+        }
         source[1] = NULL;
         check(prob_water_eval_columns(sea, 3, source, observer, NULL, many) == PROB_WATER_STATUS_ARGUMENT, "a null column");
         source[1] = x;
