@@ -99,7 +99,7 @@ writes this page in a minute and a half on two cores; `--quick` prints the table
 
 ![Error of every stage](images/error-budget.png)
 
-A cell is median / worst (bound of the worst) over about {count} inputs a stage, random ones and extreme ones: half
+A cell is median / worst (bound of the worst) over up to {count} inputs a stage, random ones and extreme ones: half
 of all directions within 10 degrees of the horizon, to 89.9999; standard deviations at their floor of 1e-3; w* from 0 to
 238.65 cm/s; D from 1 mm to infinity. Inputs count as the exact values of their floats, so the float32 column is what
 float32 arithmetic does to float32 directions; what rounding the directions costs stands in a row of its own. Sines,
