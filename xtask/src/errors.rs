@@ -16,18 +16,5 @@ pub fn errors(arguments: &[String]) -> Result<()> {
 /// Builds `target/release/examples/errors`, wherever else cargo is told to build.
 pub fn build_example() -> Result<()> {
     println!("build: the example errors");
-    util::run(
-        util::cargo().args([
-            "build",
-            "--release",
-            "--quiet",
-            "-p",
-            "prob-water",
-            "--example",
-            "errors",
-            "--target-dir",
-            "target",
-        ]),
-        "cargo build -p prob-water --example errors",
-    )
+    util::build_in_target(&["-p", "prob-water", "--example", "errors"])
 }

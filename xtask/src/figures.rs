@@ -17,16 +17,5 @@ pub fn figures(arguments: &[String]) -> Result<()> {
 /// Builds `target/release/prob-water`, wherever else cargo is told to build.
 pub fn build_command() -> Result<()> {
     println!("build: the command prob-water");
-    util::run(
-        util::cargo().args([
-            "build",
-            "--release",
-            "--quiet",
-            "-p",
-            "prob-water-cli",
-            "--target-dir",
-            "target",
-        ]),
-        "cargo build -p prob-water-cli",
-    )
+    util::build_in_target(&["-p", "prob-water-cli"])
 }

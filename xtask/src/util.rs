@@ -59,6 +59,14 @@ pub fn cxx() -> Result<String> {
     Ok(name)
 }
 
+/// Builds something with optimisation into this directory's `target`, wherever else cargo is told to build.
+pub fn build_in_target(what: &[&str]) -> Result<()> {
+    run(
+        cargo().args(["build", "--release", "--quiet", "--target-dir", "target"]).args(what),
+        &format!("cargo build {}", what.join(" ")),
+    )
+}
+
 /// Whether the command starts and succeeds; its output is dropped.
 pub fn succeeds(command: &mut Command) -> bool {
     command
