@@ -38,6 +38,14 @@ pub(crate) fn variances(waves: &Waves) -> [f64; 3] {
     Component::new(waves).map_or([0.0; 3], |component| component.variances(waves.components as f64))
 }
 
+/// No drawn sea is steeper.
+pub(crate) fn steepest(waves: &Waves) -> f64 {
+    Component::new(waves).map_or(0.0, |component| {
+        let [upwind, crosswind, _] = component.bounds(waves.components as f64);
+        upwind.hypot(crosswind)
+    })
+}
+
 impl Component {
     /// `None` where there are no waves.
     pub fn new(waves: &Waves) -> Option<Self> {

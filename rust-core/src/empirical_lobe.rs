@@ -328,7 +328,7 @@ impl EmpiricalLobe {
     ) -> Statistics {
         let mut values = vec![0.0; draws.get() as usize];
         if i[2] <= 0.0 || o[2] <= 0.0 {
-            return Statistics { whitecap: 0.0, ..Statistics::of(values, limits) };
+            return Statistics { whitecap: 0.0, ..Statistics::of_values(values, limits, 0.0) };
         }
         let place = self.place(i, o);
         let (Moments { facets, facets2, whitecaps }, rho) = self.moments(i, o, &place);
@@ -364,7 +364,7 @@ impl EmpiricalLobe {
             *value = if *foamy { foam } else { facets() };
         }
         let foamy = all.iter().filter(|(foamy, ..)| *foamy).count() as f64 / count;
-        Statistics { whitecap: foamy, ..Statistics::of(values, limits) }
+        Statistics { whitecap: foamy, ..Statistics::of_values(values, limits, f64::INFINITY) }
     }
 
     /// [`EmpiricalLobe::estimate`] for every observer of an engagement: directions are those from where its beam meets the mean surface

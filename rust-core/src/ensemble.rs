@@ -34,12 +34,16 @@
 //! # }
 //! ```
 
+use crate::brdf::Lobe;
 use crate::cast::Path;
+use crate::level_water::Spreads;
 use crate::scenario::Engagement;
-use crate::surface::{Surface, normal};
+use crate::slope_draws::{FEWEST_COMPONENTS, Proposal, SlopeDraws};
+use crate::statistics::{Bounds, Draw, Statistics};
+use crate::surface::{self, Surface, normal};
 use crate::waves::{Component, Draws, Numbers, Waves};
 use crate::{Error, Water};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -67,6 +71,8 @@ pub struct Ensemble {
     pub draws: Draws,
     /// How whitecaps take part.
     pub presence: Presence,
+    /// Which seas are drawn, where facets are narrow.
+    pub proposal: Proposal,
     /// Place in m and time in s at which the drawn phases count. Any will do, but evenly spread phases help most where
     /// the beam meets the water: [`Ensemble::around`].
     pub phases_at: ([f64; 2], f64),
@@ -94,34 +100,6 @@ pub struct Observation {
     pub obscured: bool,
 }
 
-/// Mean, spread and quantiles of f, 1/sr, over instances.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Statistics {
-    /// Mean.
-    pub mean: f64,
-    /// Standard deviation over N, not N - 1.
-    pub std: f64,
-    /// Standard error of the mean, std/sqrt(N) (an overestimate for Sobol draws); 0 for infinitely many.
-    pub sem: f64,
-    /// Smallest; not a number for infinitely many.
-    pub min: f64,
-    /// Quantiles 0.05, 0.50, 0.95, 0.99, linear between neighbours.
-    pub quantiles: [f64; 4],
-    /// Largest; not a number for infinitely many.
-    pub max: f64,
-    /// Mean of f times the local cosine of the angle of reflection.
-    pub mean_f_cos: f64,
-    /// Share of instances in which the observer is obscured.
-    pub obscured: f64,
-    /// Share of instances in which the hit is a whitecap.
-    pub whitecap: f64,
-    /// Share of instances in which f exceeds each of the limits asked for.
-    pub over: Vec<f64>,
-}
-
-/// The levels of [`Statistics::quantiles`].
-pub const QUANTILES: [f64; 4] = [0.05, 0.50, 0.95, 0.99];
-
 impl Ensemble {
     /// The report's: random draws and drawn whitecaps.
     pub fn new(water: &Water) -> Self {
@@ -130,6 +108,7 @@ impl Ensemble {
             waves: water.waves(),
             draws: Draws::Random,
             presence: Presence::Drawn,
+            proposal: Proposal::Plain,
             phases_at: ([0.0; 2], 0.0),
         }
     }
@@ -151,7 +130,7 @@ impl Ensemble {
     /// Refuses an engagement whose samples would take more than [`MEMORY`].
     pub fn check(&self, engagement: &Engagement) -> Result<(), Error> {
         let instances = self.water.parameters.instances;
-        let (one, observers) = (bytes(engagement), engagement.observers().len());
+        let (one, observers) = (self.bytes(engagement), engagement.observers().len());
         if instances <= MEMORY / one {
             return Ok(());
         }
@@ -185,26 +164,101 @@ impl Ensemble {
             return Err(Error::Length { what: "engagements", found: 0, expected: 1 });
         }
         let count = instances.end - instances.start;
+        if count == 0 {
+            return Err(Error::OutOfRange {
+                parameter: "instances",
+                value: "0".into(),
+                allowed: "at least 1".into(),
+            });
+        }
         let mut needed = 0;
         let fits = |e: &&Engagement| {
-            needed += count * bytes(e);
+            needed += count * self.bytes(e);
             needed <= MEMORY
         };
         let group = engagements.iter().take_while(fits).count().max(1).min(engagements.len());
         let group = &engagements[..group];
-        let observers: Vec<usize> = group.iter().map(|e| e.observers().len()).collect();
-        let width: usize = observers.iter().sum();
+        let plan = self.plan(group)?;
 
+        let plain: Vec<Engagement> = plan.iter().zip(group).filter_map(|(plan, e)| plan.plain(e)).collect();
+        let width: usize = plain.iter().map(|e| e.observers().len()).sum();
         let empty = Hit { position: [0.0; 3], normal: normal([0.0; 2]), whitecap: 0.0 };
-        let mut hits = reserved(count as usize * group.len(), empty)?;
+        let mut hits = reserved(count as usize * plain.len(), empty)?;
         let mut observations = reserved(count as usize * width, Observation::default())?;
-        // At least one place for each instance, so that both arrays come apart into as many pieces.
-        let rows = hits.par_chunks_mut(group.len()).zip(observations.par_chunks_mut(width.max(1)));
-        rows.enumerate().for_each_init(Worker::default, |worker, (row, (hits, observations))| {
-            self.instance(worker, instances.start + row as u64, group, hits, observations);
-            progress(group.len() as u64);
-        });
-        Ok(Samples { first: instances.start, observers, hits, observations })
+        if !plain.is_empty() {
+            let rows = hits.par_chunks_mut(plain.len()).zip(observations.par_chunks_mut(width));
+            rows.enumerate().for_each_init(Worker::default, |worker, (row, (hits, observations))| {
+                self.instance(worker, instances.start + row as u64, &plain, hits, observations);
+                progress(plain.len() as u64);
+            });
+        }
+
+        let mut slopes = vec![];
+        for (plan, engagement) in plan.iter().zip(group) {
+            for observer in plan.by_slopes() {
+                let into = SlopeDraws {
+                    hits: reserved(count as usize, empty)?,
+                    observations: reserved(count as usize, Observation::default())?,
+                    weights: reserved(count as usize, 0.0)?,
+                    largest_weight: 0.0,
+                };
+                slopes.push(self.slope_draws(engagement, observer, instances.clone(), into));
+                progress(count);
+            }
+        }
+        let plain =
+            Plain { observers: plain.iter().map(|e| e.observers().len()).collect(), hits, observations };
+        let ways = group.iter().map(|e| e.ways().collect()).collect();
+        Ok(Samples {
+            first: instances.start,
+            count: count as usize,
+            lobe: self.water.lobe,
+            ways,
+            plan,
+            plain,
+            slopes,
+        })
+    }
+
+    /// Number of casts that the instances of these engagements take, for progress.
+    pub fn casts(&self, engagements: &[Engagement]) -> Result<u64, Error> {
+        let seas = |plan: &Plan| u64::from(plan.has_plain()) + plan.by_slopes().count() as u64;
+        Ok(self.plan(engagements)?.iter().map(seas).sum::<u64>() * self.water.parameters.instances)
+    }
+
+    /// How every observer's seas are drawn.
+    fn plan(&self, engagements: &[Engagement]) -> Result<Vec<Plan>, Error> {
+        let components = self.water.parameters.components;
+        let few = components < FEWEST_COMPONENTS;
+        let proposal = match self.proposal {
+            Proposal::Slopes if few => {
+                let allowed = format!("at least {FEWEST_COMPONENTS} to draw slopes");
+                return Err(Error::OutOfRange {
+                    parameter: "components",
+                    value: components.to_string(),
+                    allowed,
+                });
+            }
+            Proposal::Auto if few => Proposal::Plain,
+            _ if self.waves.is_empty() => Proposal::Plain,
+            proposal => proposal,
+        };
+        if proposal == Proposal::Plain {
+            return Ok(engagements.iter().map(|e| Plan(vec![false; e.observers().len()])).collect());
+        }
+        if proposal == Proposal::Slopes {
+            return Ok(engagements.iter().map(|e| Plan(vec![true; e.observers().len()])).collect());
+        }
+        let spreads = Spreads::new(&self.water);
+        Ok(engagements.iter().map(|e| Plan(self.needs_slopes(e, &spreads))).collect())
+    }
+
+    /// Memory that one instance of an engagement takes, at most.
+    fn bytes(&self, engagement: &Engagement) -> u64 {
+        let observers = engagement.observers().len();
+        let by_slopes = size_of::<Hit>() + size_of::<f64>();
+        let hits = if self.proposal == Proposal::Plain { size_of::<Hit>() } else { observers * by_slopes };
+        (hits + observers * size_of::<Observation>()) as u64
     }
 
     /// One instance: every engagement's hit and observations.
@@ -225,7 +279,7 @@ impl Ensemble {
             match self.hit(worker, engagement, chance) {
                 Some(found) => {
                     *hit = found;
-                    self.observe(worker, engagement, hit, now);
+                    self.observe(worker, engagement, hit, DVec3::ZERO, engagement.observers(), now);
                 }
                 None => {
                     hit.position = engagement.laser();
@@ -240,32 +294,40 @@ impl Ensemble {
         let (laser, beam) = (engagement.laser().into(), engagement.direction().into());
         let place = worker.path.first_hit(&worker.surface, laser, beam)?.truncate().to_array();
         let point = worker.surface.point(place);
+        Some(self.hit_of(&point, place, chance))
+    }
+
+    /// The hit at a place whose surface is known.
+    pub(crate) fn hit_of(&self, point: &surface::Point, place: [f64; 2], chance: f64) -> Hit {
         let probability = self.water.whitecap_probability(point.acceleration);
-        Some(Hit {
+        Hit {
             position: [place[0], place[1], point.height],
             normal: point.normal(),
             whitecap: match self.presence {
                 Presence::Drawn => f64::from(chance < probability),
                 Presence::Expected => probability,
             },
-        })
+        }
     }
 
-    /// What the observers see of a hit.
-    fn observe(
+    /// What some observers see of a hit, on a surface whose own origin is at a place in m.
+    pub(crate) fn observe(
         &self,
         worker: &mut Worker,
         engagement: &Engagement,
         hit: &Hit,
+        origin: DVec3,
+        observers: &[[f64; 3]],
         observations: &mut [Observation],
     ) {
         let (from, n) = (DVec3::from(hit.position), DVec3::from(hit.normal));
         let to_laser = -DVec3::from(engagement.direction());
-        for (observer, seen) in engagement.observers().iter().zip(observations) {
+        for (observer, seen) in observers.iter().zip(observations) {
             let observer = DVec3::from(*observer);
             let way = (observer - from).normalize();
             seen.cos_r = way.dot(n);
-            seen.obscured = seen.cos_r <= 0.0 || worker.path.hides(&worker.surface, from, observer);
+            seen.obscured =
+                seen.cos_r <= 0.0 || worker.path.hides(&worker.surface, from - origin, observer - origin);
             if !seen.obscured {
                 let lobe = &self.water.lobe;
                 let facets = if hit.whitecap < 1.0 {
@@ -281,14 +343,34 @@ impl Ensemble {
 
 /// What one thread needs again and again.
 #[derive(Default)]
-struct Worker {
-    surface: Surface,
-    path: Path,
+pub(crate) struct Worker {
+    pub surface: Surface,
+    pub path: Path,
 }
 
-/// What one instance of an engagement takes.
-fn bytes(engagement: &Engagement) -> u64 {
-    (size_of::<Hit>() + engagement.observers().len() * size_of::<Observation>()) as u64
+/// Of every observer of an engagement, whether its seas are drawn by slopes.
+#[derive(Debug)]
+struct Plan(Vec<bool>);
+
+impl Plan {
+    fn has_plain(&self) -> bool {
+        self.0.contains(&false)
+    }
+
+    /// The engagement with the observers of plain draws alone; `None` if there are none.
+    fn plain(&self, engagement: &Engagement) -> Option<Engagement> {
+        self.has_plain().then(|| engagement.with_observers(|observer| !self.0[observer]))
+    }
+
+    fn by_slopes(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().enumerate().filter_map(|(observer, by_slopes)| by_slopes.then_some(observer))
+    }
+
+    /// Of the observers before one, how many have plain draws and how many have not.
+    fn before(&self, observer: usize) -> [usize; 2] {
+        let by_slopes = self.0[..observer].iter().filter(|by_slopes| **by_slopes).count();
+        [observer - by_slopes, by_slopes]
+    }
 }
 
 /// Memory for so many, or a refusal instead of an abort.
@@ -307,6 +389,19 @@ fn reserved<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Error> {
 #[derive(Debug)]
 pub struct Samples {
     first: u64,
+    count: usize,
+    lobe: Lobe<f64>,
+    /// Of every engagement and observer, directions from the target to the laser and to the observer.
+    ways: Vec<Vec<[[f64; 3]; 2]>>,
+    plan: Vec<Plan>,
+    plain: Plain,
+    /// Of every observer whose seas are drawn by slopes.
+    slopes: Vec<SlopeDraws>,
+}
+
+/// Plain draws of the engagements that have any.
+#[derive(Debug)]
+struct Plain {
     /// Of every engagement.
     observers: Vec<usize>,
     /// Instance by instance, in each the engagements.
@@ -315,83 +410,133 @@ pub struct Samples {
     observations: Vec<Observation>,
 }
 
+/// One drawn sea as an observer sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Sighting<'a> {
+    /// Its number.
+    pub instance: u64,
+    /// What it counts in a mean: 1 for plain draws; else 1 on average, and 0 for a sea that the beam does not reach.
+    pub weight: f64,
+    /// Where the beam meets the water.
+    pub hit: &'a Hit,
+    /// What the observer sees of that.
+    pub seen: &'a Observation,
+}
+
 impl Samples {
     /// How many engagements the group holds.
     pub fn engagements(&self) -> usize {
-        self.observers.len()
+        self.plan.len()
     }
 
     /// How many instances were drawn.
     pub fn instances(&self) -> usize {
-        self.hits.len() / self.observers.len()
+        self.count
     }
 
-    /// Number, hit and observation of every instance, as an observer of one of the engagements saw it.
-    pub fn of(&self, engagement: usize, observer: usize) -> impl Iterator<Item = (u64, &Hit, &Observation)> {
-        let before: usize = self.observers[..engagement].iter().sum();
-        let hits = self.hits.iter().skip(engagement).step_by(self.observers.len());
-        let width = self.observers.iter().sum();
-        let seen = self.observations.iter().skip(before + observer).step_by(width);
-        hits.zip(seen).zip(self.first..).map(|((hit, seen), instance)| (instance, hit, seen))
+    fn seas(&self, engagement: usize, observer: usize) -> Result<Seas<'_>, Error> {
+        let missing = |what, index, count| Error::Index { what, index, count };
+        let plan =
+            self.plan.get(engagement).ok_or_else(|| missing("engagement", engagement, self.plan.len()))?;
+        let by_slopes = *plan.0.get(observer).ok_or_else(|| missing("observer", observer, plan.0.len()))?;
+        let before = &self.plan[..engagement];
+        let [plain, slopes] = plan.before(observer);
+        Ok(if by_slopes {
+            let others: usize = before.iter().map(|plan| plan.by_slopes().count()).sum();
+            Seas::Slopes(&self.slopes[others + slopes])
+        } else {
+            Seas::Plain { engagement: before.iter().filter(|plan| plan.has_plain()).count(), observer: plain }
+        })
     }
 
-    /// Statistics of what an observer of one of the engagements saw.
-    pub fn statistics(&self, engagement: usize, observer: usize, limits: &[f64]) -> Statistics {
-        let n = self.instances() as f64;
-        let mean = |value: &dyn Fn(&Hit, &Observation) -> f64| {
-            self.of(engagement, observer).map(|(_, hit, seen)| value(hit, seen)).sum::<f64>() / n
+    /// Whether an observer's seas were drawn by slopes; refused where there is no such engagement or observer.
+    pub fn by_slopes(&self, engagement: usize, observer: usize) -> Result<bool, Error> {
+        Ok(matches!(self.seas(engagement, observer)?, Seas::Slopes(_)))
+    }
+
+    /// Every instance, as an observer of one of the engagements saw it; refused where there is no such engagement or
+    /// observer.
+    pub fn of(
+        &self,
+        engagement: usize,
+        observer: usize,
+    ) -> Result<impl Iterator<Item = Sighting<'_>>, Error> {
+        let every = |first: usize, step: usize| (first, step);
+        let (hits, observations, weights, [hit, seen]) = match self.seas(engagement, observer)? {
+            Seas::Slopes(draws) => {
+                (&draws.hits, &draws.observations, &draws.weights[..], [every(0, 1), every(0, 1)])
+            }
+            Seas::Plain { engagement, observer } => {
+                let Plain { observers, hits, observations } = &self.plain;
+                let before: usize = observers[..engagement].iter().sum();
+                let places =
+                    [every(engagement, observers.len()), every(before + observer, observers.iter().sum())];
+                (hits, observations, &[][..], places)
+            }
         };
-        let values = self.of(engagement, observer).map(|(_, _, seen)| seen.f).collect();
-        Statistics {
-            mean_f_cos: mean(&|_, seen| seen.f * seen.cos_r.max(0.0)),
-            obscured: mean(&|_, seen| f64::from(seen.obscured)),
-            whitecap: mean(&|hit, _| hit.whitecap),
-            ..Statistics::of(values, limits)
-        }
+        let hits = hits.iter().skip(hit.0).step_by(hit.1);
+        let seen = observations.iter().skip(seen.0).step_by(seen.1);
+        let weights = weights.iter().copied().chain(std::iter::repeat(1.0));
+        let rows = hits.zip(seen).zip(weights).zip(self.first..);
+        Ok(rows.map(|(((hit, seen), weight), instance)| Sighting { instance, weight, hit, seen }))
+    }
+
+    /// Statistics of what an observer of one of the engagements saw; refused where there is no such engagement or
+    /// observer.
+    pub fn statistics(
+        &self,
+        engagement: usize,
+        observer: usize,
+        limits: &[f64],
+    ) -> Result<Statistics, Error> {
+        let all: Vec<Sighting> = self.of(engagement, observer)?.collect();
+        let sum = |value: &dyn Fn(&Sighting) -> f64| all.iter().map(|s| s.weight * value(s)).sum::<f64>();
+        let (n, total) = (all.len() as f64, sum(&|_| 1.0));
+        // Shares are of the seas that the beam reaches.
+        let share = |value: &dyn Fn(&Sighting) -> f64| sum(value) / total.max(f64::MIN_POSITIVE);
+        let bounds = || Bounds {
+            weight: match self.seas(engagement, observer) {
+                Ok(Seas::Slopes(draws)) => draws.largest_weight,
+                _ => 1.0,
+            },
+            f: largest(&self.lobe, self.ways[engagement][observer]),
+        };
+        let draws = all.iter().map(|s| Draw { f: s.seen.f, weight: s.weight }).collect();
+        Ok(Statistics {
+            mean_f_cos: sum(&|s| s.seen.f * s.seen.cos_r.max(0.0)) / n,
+            obscured: share(&|s| f64::from(s.seen.obscured)),
+            whitecap: share(&|s| s.hit.whitecap),
+            ..Statistics::of(draws, limits, bounds)
+        })
     }
 }
 
-impl Statistics {
-    /// Of at least one value of f; of what is not f nothing is known.
-    pub(crate) fn of(mut values: Vec<f64>, limits: &[f64]) -> Self {
-        let n = values.len() as f64;
-        values.sort_unstable_by(f64::total_cmp);
-        let mean = values.iter().sum::<f64>() / n;
-        let std = (values.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / n).sqrt();
-        let over = |limit: &f64| (values.len() - values.partition_point(|f| f <= limit)) as f64 / n;
-        Self {
-            mean,
-            std,
-            sem: std / n.sqrt(),
-            min: values[0],
-            quantiles: QUANTILES.map(|level| quantile(&values, level)),
-            max: values[values.len() - 1],
-            mean_f_cos: f64::NAN,
-            obscured: f64::NAN,
-            whitecap: f64::NAN,
-            over: limits.iter().map(over).collect(),
-        }
-    }
+/// Where an observer's draws are kept.
+enum Seas<'a> {
+    /// Among the engagements and observers of plain draws.
+    Plain {
+        engagement: usize,
+        observer: usize,
+    },
+    Slopes(&'a SlopeDraws),
 }
 
-/// Quantile of sorted numbers, linear between neighbours.
-fn quantile(sorted: &[f64], level: f64) -> f64 {
-    let at = level * (sorted.len() - 1) as f64;
-    let (below, rest) = (at.floor() as usize, at.fract());
-    let above = (below + 1).min(sorted.len() - 1);
-    sorted[below] + rest * (sorted[above] - sorted[below])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_lie_between_neighbours() {
-        let sorted = [1.0, 2.0, 4.0, 8.0, 16.0];
-        assert_eq!(quantile(&sorted, 0.5), 4.0);
-        assert_eq!(quantile(&sorted, 0.25), 2.0);
-        assert!((quantile(&sorted, 0.99) - 15.68).abs() < 1e-12);
-        assert_eq!(quantile(&[3.0], 0.95), 3.0);
+/// The largest f, 1/sr, of whitecaps and of facets on any wave, found on slopes to either side of the specular one.
+fn largest(lobe: &Lobe<f64>, [i, o]: [[f64; 3]; 2]) -> f64 {
+    const REACH: i32 = 4;
+    let half = DVec3::from(i) + DVec3::from(o);
+    if half.z <= 0.0 {
+        return lobe.whitecap_brdf;
     }
+    let specular = -half.truncate() / half.z;
+    let wind = DVec2::new(lobe.facets.cos_wind, lobe.facets.sin_wind);
+    let spread = lobe.facets.spread(DVec2::new(specular.dot(wind), specular.dot(wind.perp())));
+    let offsets =
+        (-REACH..=REACH).flat_map(|u| (-REACH..=REACH).map(move |c| DVec2::new(u.into(), c.into())));
+    let f = |at: DVec2| {
+        let off = 0.5 * at * spread;
+        let slope = specular + off.x * wind + off.y * wind.perp();
+        lobe.facets.eval(i, o, normal(slope.into()))
+    };
+    offsets.map(f).fold(lobe.whitecap_brdf, f64::max)
 }

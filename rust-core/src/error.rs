@@ -79,6 +79,16 @@ pub enum Error {
         /// What is wrong with it.
         reason: String,
     },
+    /// A number of something that is not there.
+    #[error("{what} {index} does not exist: there are {count}, from 0")]
+    Index {
+        /// What is counted.
+        what: &'static str,
+        /// The number asked for.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
     /// Arrays of a batch whose lengths do not belong together.
     #[error("{what} holds {found} rows, expected {expected}")]
     Length {
@@ -109,7 +119,9 @@ impl Error {
             | Self::WrongType { parameter, .. } => vec![parameter],
             Self::Conflict { first, second, .. } => vec![second, first],
             Self::Table { .. } => vec!["table"],
-            Self::UnknownParameter { .. } | Self::Row { .. } | Self::Length { .. } => vec![],
+            Self::UnknownParameter { .. } | Self::Row { .. } | Self::Index { .. } | Self::Length { .. } => {
+                vec![]
+            }
         }
     }
 }

@@ -12,11 +12,11 @@
 //! variance. The ray cast of [`crate::Ensemble`] is the reference for low views.
 
 use crate::characteristic::Component;
-use crate::ensemble::{QUANTILES, Statistics};
 use crate::facet_density::{Cell, FacetDensity};
 use crate::quadrature::{gauss_legendre, midpoints, panels};
 use crate::scenario::Engagement;
 use crate::slope_density::{Point, Slopes, WindFrame};
+use crate::statistics::{QUANTILES, Statistics};
 use crate::surface::normal;
 use crate::{Error, Water};
 use glam::{DVec2, DVec3};
@@ -125,6 +125,11 @@ impl Exact {
                 obscured: distribution.nothing(),
                 whitecap: whitecaps,
                 over: limits.iter().map(|limit| distribution.over(*limit)).collect(),
+                effective: f64::NAN,
+                mean_upper: means.f,
+                over_upper: vec![],
+                mean_error: 0.0,
+                quantile_error: 0.0,
             }
         })
     }
