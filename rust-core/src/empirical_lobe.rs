@@ -15,7 +15,6 @@
 //!     wind: Wind::FrictionVelocity(8.0),
 //!     wind_direction: 30.0,
 //!     surface: Surface::Empirical,
-//!     footprint: 0.15,
 //!     ..Parameters::default()
 //! }
 //! .configure()?;
@@ -37,7 +36,7 @@ use crate::real::Vec3;
 use crate::shadowing::hidden;
 use crate::table::Table;
 use crate::waves::{Draws, Numbers};
-use crate::{Across, Engagement, Error, Exact, Lobe, Real, Scalar, Statistics, Water};
+use crate::{Across, Engagement, Error, Exact, Lobe, Real, Scalar, Statistics, Surface, Water};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::num::NonZeroU32;
@@ -139,8 +138,12 @@ struct Place<T> {
 }
 
 impl EmpiricalLobe {
-    /// Of a sea that the table knows; others are refused as by [`Table::check`].
+    /// Of a sea that the table knows.
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface is not [`Surface::Empirical`], and as [`Table::check`].
     pub fn new(water: &Water, table: &Table) -> Result<Self, Error> {
+        let water = &water.on(&[Surface::Empirical])?;
         let slice = table.slice(water)?;
         let spreads = Spreads::new(water);
         let (densities, steps) = ln_densities(&Exact::new(water)?, &spreads, DENSITIES);

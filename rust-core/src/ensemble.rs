@@ -7,7 +7,6 @@
 //! let water = Parameters {
 //!     wind: Wind::FrictionVelocity(8.0),
 //!     surface: Surface::Instance,
-//!     footprint: 0.15,
 //!     components: 5,
 //!     instances: 1000,
 //!     ..Parameters::default()
@@ -22,7 +21,7 @@
 //!     &[[5000.0, 0.0, 8660.0], [7000.0, 0.0, 7000.0]],
 //! )?;
 //!
-//! let ensemble = Ensemble::new(&water);
+//! let ensemble = Ensemble::new(&water)?;
 //! ensemble.check(&engagement)?;                                        // memory, before it is taken
 //! let samples = ensemble.sample(&[engagement.clone()], &|_casts| ())?; // on all cores
 //! let statistics = samples.statistics(0, 1, &[0.01]);                  // engagement 0, observer 1, limits in 1/sr
@@ -35,6 +34,7 @@
 //! ```
 
 use crate::cast::Path;
+use crate::parameters::DRAWN;
 use crate::scenario::Engagement;
 use crate::surface::{Surface, normal};
 use crate::waves::{Component, Draws, Numbers, Waves};
@@ -124,14 +124,18 @@ pub const QUANTILES: [f64; 4] = [0.05, 0.50, 0.95, 0.99];
 
 impl Ensemble {
     /// The report's: random draws and drawn whitecaps.
-    pub fn new(water: &Water) -> Self {
-        Self {
-            water: *water,
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface is flat: it has no waves to draw.
+    pub fn new(water: &Water) -> Result<Self, Error> {
+        let water = water.on(&DRAWN)?;
+        Ok(Self {
+            water,
             waves: water.waves(),
             draws: Draws::Random,
             presence: Presence::Drawn,
             phases_at: ([0.0; 2], 0.0),
-        }
+        })
     }
 
     /// The same, with Sobol draws whose phases count where and when this engagement's beam meets the mean surface.

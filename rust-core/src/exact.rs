@@ -14,6 +14,7 @@
 use crate::characteristic::Component;
 use crate::ensemble::{QUANTILES, Statistics};
 use crate::facet_density::{Cell, FacetDensity};
+use crate::parameters::DRAWN;
 use crate::quadrature::{gauss_legendre, midpoints, panels};
 use crate::scenario::Engagement;
 use crate::slope_density::{Point, Slopes, WindFrame};
@@ -60,9 +61,13 @@ pub struct Means {
 }
 
 impl Exact {
-    /// The density of the sea's slopes. Refused: fewer components than 4, and footprints whose facets
-    /// are finer than the drawn slopes by orders of magnitude.
+    /// The density of the sea's slopes.
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface is flat: it has no waves. [`Error::OutOfRange`] for fewer components than 4, and
+    /// for footprints whose facets are finer than the drawn slopes by orders of magnitude.
     pub fn new(water: &Water) -> Result<Self, Error> {
+        let water = &water.on(&DRAWN)?;
         let waves = water.waves();
         let component = Component::new(&waves);
         Ok(Self {

@@ -89,7 +89,7 @@ impl Slopes {
         let (Some(upwind), Some(crosswind)) = (upwind, crosswind) else {
             return Err(Error::OutOfRange {
                 parameter: "footprint",
-                value: water.parameters.footprint.to_string(),
+                value: water.footprint.to_string(),
                 allowed: format!(
                     "one whose facets are not so much finer than the drawn slopes \
                      (standard deviations upwind {:.2e} and {u:.2e}); more components help too",

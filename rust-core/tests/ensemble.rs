@@ -9,7 +9,7 @@ use prob_water::{Engagement, Ensemble, Presence, Statistics, Surface, Water};
 fn base(friction_velocity: f64, instances: u64) -> Water {
     water(friction_velocity, |p| {
         p.surface = Surface::Instance;
-        p.footprint = 0.15;
+        p.footprint = Some(0.15);
         p.instances = instances;
         p.whitecaps = true;
         p.wavelength = 1.0;
@@ -31,7 +31,7 @@ fn statistics(ensemble: &Ensemble, engagement: &Engagement) -> Vec<Statistics> {
 #[test]
 fn base_scenario_of_the_reference() {
     for rows in rows("scenario_base").chunk_by(|a, b| a[0] == b[0]) {
-        let mut ensemble = Ensemble::new(&base(rows[0][0], 100_000));
+        let mut ensemble = Ensemble::new(&base(rows[0][0], 100_000)).unwrap();
         ensemble.presence = Presence::Expected;
         let angles: Vec<f64> = rows.iter().map(|r| r[5]).collect();
         let engagement = in_plane(rows[0][4], &angles);
@@ -65,7 +65,7 @@ fn base_scenario_of_the_reference() {
 #[test]
 fn converged_maxima() {
     let peak = |water: &Water, incidence: f64, angles: &[f64]| {
-        let mut ensemble = Ensemble::new(water);
+        let mut ensemble = Ensemble::new(water).unwrap();
         ensemble.presence = Presence::Expected;
         let means = statistics(&ensemble, &in_plane(incidence, angles));
         let best = (0..angles.len()).max_by(|a, b| means[*a].mean.total_cmp(&means[*b].mean)).unwrap();
@@ -85,8 +85,8 @@ fn converged_maxima() {
     }
     for (i, expected) in [0.1346, 0.1376, 0.1413, 0.1449, 0.1485, 0.1518].into_iter().enumerate() {
         let mut p = base(8.0, 200_000).parameters;
-        p.footprint = 0.05 * (i + 1) as f64;
-        check(format!("D {:.2}", p.footprint), peak(&p.configure().unwrap(), 30.0, &angles), expected);
+        p.footprint = Some(0.05 * (i + 1) as f64);
+        check(format!("D {:.2}", p.footprint()), peak(&p.configure().unwrap(), 30.0, &angles), expected);
     }
     for (incidence, expected) in [(0.0, 0.1056), (15.0, 0.1132), (45.0, 0.2423), (60.0, 1.48)] {
         let all: Vec<f64> = (0..=36).map(|a| 2.5 * f64::from(a)).filter(|a| *a < 89.0).collect();
@@ -121,7 +121,7 @@ fn determined_by_the_seed_alone() {
     let engagements: Vec<_> =
         [10.0, 80.0, 30.0].iter().map(|i| in_plane(*i, &[0.0, 30.0, 60.0, 85.0])).collect();
     for draws in [prob_water::Draws::Random, prob_water::Draws::Sobol] {
-        let mut ensemble = Ensemble::new(&base(40.0, 333));
+        let mut ensemble = Ensemble::new(&base(40.0, 333)).unwrap();
         ensemble.draws = draws;
         let all = [1, 2, 7].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -150,7 +150,7 @@ fn compare_options(w: f64) {
         for (seed, mean) in means.iter_mut().enumerate() {
             let mut water = base(w, 1024);
             water.parameters.seed = seed as u64;
-            let ensemble = Ensemble { presence, ..Ensemble::new(&water) };
+            let ensemble = Ensemble { presence, ..Ensemble::new(&water).unwrap() };
             let ensemble = if even { ensemble.around(&engagement) } else { ensemble };
             let found = statistics(&ensemble, &engagement);
             *mean = [found[0].mean, found[1].mean, found[2].mean];
@@ -186,21 +186,21 @@ fn what_waves_cover_is_obscured() {
         &[[5.0, 0.0, 0.05], [0.0, 0.0, 500.0]],
     )
     .unwrap();
-    let found = statistics(&Ensemble::new(&base(24.0, 2000)), &low);
+    let found = statistics(&Ensemble::new(&base(24.0, 2000)).unwrap(), &low);
     // Half of the water stands above the mean surface: there both are covered.
     assert!(found[0].obscured > 0.5 && found[1].obscured > 0.35 && found[1].obscured < 0.5, "{found:?}");
-    let calm = statistics(&Ensemble::new(&base(0.0, 10)), &low);
+    let calm = statistics(&Ensemble::new(&base(0.0, 10)).unwrap(), &low);
     assert!(calm.iter().all(|s| s.obscured == 0.0 && s.std == 0.0));
 }
 
 #[test]
 fn memory_is_asked_for_before_it_is_taken() {
     let engagement = in_plane(30.0, &[0.0; 20]);
-    let error = Ensemble::new(&base(8.0, 1_000_000_000)).check(&engagement).unwrap_err().to_string();
+    let error = Ensemble::new(&base(8.0, 1_000_000_000)).unwrap().check(&engagement).unwrap_err().to_string();
     assert!(
         error.contains("instances") && error.contains("20 observers") && error.contains("GiB"),
         "{error}"
     );
-    assert!(Ensemble::new(&base(8.0, 1_000_000)).check(&engagement).is_ok());
-    assert!(Ensemble::new(&base(8.0, 5)).sample(&[], &|_| ()).is_err());
+    assert!(Ensemble::new(&base(8.0, 1_000_000)).unwrap().check(&engagement).is_ok());
+    assert!(Ensemble::new(&base(8.0, 5)).unwrap().sample(&[], &|_| ()).is_err());
 }

@@ -91,7 +91,8 @@ impl Scenario {
             Method::Exact(Box::new(exact))
         } else {
             let Settings { draws, presence, .. } = settings;
-            let mut ensemble = Ensemble { draws, presence, ..Ensemble::new(&water) };
+            let ensemble = Ensemble::new(&water).map_err(|e| model.refuse(flags, &e, None))?;
+            let mut ensemble = Ensemble { draws, presence, ..ensemble };
             if draws == Draws::Sobol {
                 ensemble = ensemble.around(&engagements[0]);
             }
