@@ -53,14 +53,13 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     let mut f = vec![0.0; directions.vectors[0].len()];
     let rows = directions.rows(drawn)?;
     if directions.with_normals() && matches!(surface, Surface::Ensemble | Surface::Empirical) {
-        let shown = water.parameters.get("surface").map_or(String::new(), |name| name.to_string());
-        return Err(format!("normals have no meaning with surface = {shown}").into());
+        return Err(format!("normals have no meaning with surface = {}", surface.name()).into());
     }
     let mut estimates = Vec::new();
     match surface {
-        Surface::Flat => rows.eval(&water.lobe, &mut f)?,
+        Surface::Flat => rows.eval(&water.lobe()?, &mut f)?,
         Surface::Instance => {
-            let lobe = InstanceLobe::new(&water);
+            let lobe = InstanceLobe::new(&water)?;
             rows.each(&mut f, |row, i, o, _| {
                 let [x, y, _] = directions.vectors[2][row];
                 // The lobe's value has the cosine that whoever integrates f adds.

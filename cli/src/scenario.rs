@@ -15,7 +15,7 @@ use prob_water::{EmpiricalLobe, Engagement, Ensemble, Estimate, Statistics, Surf
 use rayon::prelude::*;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use tables::Tables;
+use tables::{By, Tables};
 
 /// The subcommand's flags.
 pub fn command() -> Command {
@@ -46,7 +46,8 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     match &scenario.method {
         Method::Draws(ensemble) => draws(&scenario, ensemble, tables),
         Method::Exact(exact) => integrals(&scenario, exact, tables),
-        Method::Table(lobe) => by_table(&scenario, lobe, tables),
+        Method::Auto(exact, ensemble) => best(&scenario, exact.as_deref(), ensemble, tables),
+        Method::Table(lobe, slopes) => by_table(&scenario, lobe, slopes.as_deref(), tables),
     }
 }
 
@@ -57,8 +58,7 @@ pub fn check(document: &Document, path: &Path) -> Result<(), String> {
 
 /// As many engagements at a time as fit into memory.
 fn draws(scenario: &Scenario, ensemble: &Ensemble, mut tables: Tables) -> Outcome {
-    let casts = scenario.engagements.len() as u64 * scenario.water.parameters.instances;
-    let progress = Progress::new(casts, true);
+    let progress = Progress::new(ensemble.casts(&scenario.engagements)?, true);
     let mut rest = &scenario.engagements[..];
     while !rest.is_empty() {
         let samples = ensemble.sample(rest, &|casts| progress.add(casts))?;
@@ -77,7 +77,43 @@ fn integrals(scenario: &Scenario, exact: &Exact, mut tables: Tables) -> Outcome 
         progress.add(1);
         progress.aside(|| {
             let mut all = all.iter().enumerate();
-            all.try_for_each(|(observer, s)| tables.statistics(engagement, observer, s, None))
+            all.try_for_each(|(observer, s)| tables.statistics(engagement, observer, s, By::Integrals))
+        })?;
+    }
+    drop(progress);
+    tables.end()
+}
+
+/// The largest relative error for which integrals stand in for draws.
+const SMALL_ERROR: f64 = 0.02;
+
+/// Integrals for the observers whom they serve, draws for the others.
+fn best(scenario: &Scenario, exact: Option<&Exact>, ensemble: &Ensemble, mut tables: Tables) -> Outcome {
+    let progress = Progress::new(scenario.engagements.len() as u64, true);
+    for engagement in &scenario.engagements {
+        let limits = &scenario.limits;
+        let exact = exact.map_or(vec![], |exact| exact.statistics(engagement, limits));
+        let serves = |observer: usize| {
+            exact.get(observer).is_some_and(|s| s.mean_error.max(s.share_error) <= SMALL_ERROR)
+        };
+        let others = engagement.with_observers(|observer| !serves(observer));
+        let samples = match others.observers() {
+            [] => None,
+            _ => Some(ensemble.sample(&[others], &|_| ())?),
+        };
+        progress.add(1);
+        progress.aside(|| -> Outcome {
+            let mut drawn = 0;
+            for observer in 0..engagement.observers().len() {
+                match &samples {
+                    Some(samples) if !serves(observer) => {
+                        tables.sample(engagement, observer, samples, [0, drawn], limits)?;
+                        drawn += 1;
+                    }
+                    _ => tables.statistics(engagement, observer, &exact[observer], By::Integrals)?,
+                }
+            }
+            Ok(())
         })?;
     }
     drop(progress);
@@ -88,21 +124,30 @@ fn integrals(scenario: &Scenario, exact: &Exact, mut tables: Tables) -> Outcome 
 const GROUP: usize = 256;
 
 /// Eqs. 90-91, and draws through the table's spreads for all that they do not give.
-fn by_table(scenario: &Scenario, lobe: &EmpiricalLobe, mut tables: Tables) -> Outcome {
+fn by_table(
+    scenario: &Scenario,
+    lobe: &EmpiricalLobe,
+    slopes: Option<&EmpiricalLobe>,
+    mut tables: Tables,
+) -> Outcome {
     let p = &scenario.water.parameters;
     let draws = u32::try_from(p.instances).ok().and_then(NonZeroU32::new).expect("is checked");
     let seen = |engagement: &Engagement| -> Vec<(Estimate, Statistics)> {
         let statistics = |[i, o]: [[f64; 3]; 2]| {
-            let estimate = lobe.estimate(i, o);
-            let drawn = lobe.monte_carlo(i, o, draws, p.seed, &scenario.limits);
-            (estimate, Statistics { mean: estimate.mean, std: estimate.std, sem: 0.0, ..drawn })
+            let (mut found, estimate) = lobe.statistics(i, o, draws, p.seed, &scenario.limits);
+            // How far the report's Gaussian across the plane is from the slopes' density.
+            if let Some(slopes) = slopes {
+                let off = estimate.mean / slopes.estimate(i, o).mean.max(f64::MIN_POSITIVE) - 1.0;
+                found.mean_error += off.abs();
+                found.mean_upper =
+                    found.mean_upper.max(slopes.estimate(i, o).mean * (1.0 + found.mean_error));
+            }
+            (estimate, found)
         };
         let ways: Vec<_> = engagement.ways().collect();
         ways.into_par_iter().map(statistics).collect()
     };
     let progress = Progress::new(scenario.engagements.len() as u64, true);
-    // How many rows lie outside of the table's grid, and the first of them.
-    let (mut outside, mut first) = (0, String::new());
     for group in scenario.engagements.chunks(GROUP) {
         let all: Vec<_> = group
             .par_iter()
@@ -114,25 +159,11 @@ fn by_table(scenario: &Scenario, lobe: &EmpiricalLobe, mut tables: Tables) -> Ou
             .collect();
         for (engagement, all) in group.iter().zip(&all) {
             for (observer, (estimate, statistics)) in all.iter().enumerate() {
-                if estimate.outside {
-                    outside += 1;
-                    if outside == 1 {
-                        first = format!("time {}, observer {observer}", engagement.time());
-                    }
-                }
-                progress
-                    .aside(|| tables.statistics(engagement, observer, statistics, Some(estimate.outside)))?;
+                let by = By::Table { outside: estimate.outside };
+                progress.aside(|| tables.statistics(engagement, observer, statistics, by))?;
             }
         }
     }
     drop(progress);
-    tables.end()?;
-    if outside > 0 {
-        let rows: usize = scenario.engagements.iter().map(|e| e.observers().len()).sum();
-        eprintln!(
-            "prob-water: warning: {outside} of {rows} rows are outside of the table's grid (column outside), the first at {first}: \
-             they are its nearest values"
-        );
-    }
-    Ok(())
+    tables.end()
 }

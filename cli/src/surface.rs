@@ -104,7 +104,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     };
     let waves = if fade { water.fading_waves() } else { water.waves() };
     let sea = Sea {
-        all: Ensemble { waves, draws, ..Ensemble::new(&water) },
+        all: Ensemble { waves, draws, ..Ensemble::new(&water)? },
         instance: *matches.get_one("instance").expect("has a default"),
         fade,
     };
@@ -160,7 +160,7 @@ const WAVES: [&str; 6] =
 
 impl Sea {
     fn components(&self) -> impl Iterator<Item = Component> {
-        let footprint = self.all.water.parameters.footprint;
+        let footprint = self.all.water.footprint;
         let components = self.all.components(self.instance).1;
         components.map(move |c| if self.fade { c.seen_at(footprint) } else { c })
     }

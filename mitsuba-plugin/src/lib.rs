@@ -185,15 +185,14 @@ impl Options {
             }
             table => table.as_ref().map(|(_, table)| table),
         };
-        let mut lobe = water.lobe;
+        let mut lobe = water.local_lobe();
         let waves = match surface {
             Surface::Flat => Waves::Level,
             Surface::Instance => {
                 // Every place has its own.
                 lobe = lobe.with_whitecaps(0.0);
-                let sea =
-                    if varied.is_empty() { InstanceLobe::new(&water) } else { InstanceLobe::fading(&water) };
-                Waves::Drawn(sea)
+                let new = if varied.is_empty() { InstanceLobe::new } else { InstanceLobe::fading };
+                Waves::Drawn(new(&water)?)
             }
             Surface::Ensemble => {
                 let afar = EnsembleLobe::new(&water)?;
@@ -374,7 +373,7 @@ impl Water {
         let mut text = self.water.to_string();
         if self.facets.is_some() {
             // A word that is refused unless one says for which footprint.
-            let own = format!("\nfootprint = {}\n", self.water.parameters.footprint);
+            let own = format!("\nfootprint = {}\n", self.water.footprint);
             text = text.replacen(&own, "\nfootprint = \"varies\"\n", 1);
         }
         if let Waves::Tabled(_) = self.waves {

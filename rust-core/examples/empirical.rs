@@ -27,7 +27,7 @@ fn main() {
         let parameters = Parameters {
             wind: Wind::FrictionVelocity(w),
             surface: Surface::Empirical,
-            footprint: 0.15,
+            footprint: Some(0.15),
             instances: INSTANCES,
             ..Parameters::default()
         };
@@ -54,7 +54,7 @@ fn main() {
                 Engagement::far(30.0, 10e3, &[seen], 100e3).expect("the engagement is valid")
             })
             .collect();
-        let ensemble = Ensemble::new(&water);
+        let ensemble = Ensemble::new(&water).expect("the sea has drawn waves");
         let draws = NonZeroU32::new(INSTANCES as u32).expect("is not 0");
 
         let mut candidates: Vec<Candidate> = vec![
@@ -63,7 +63,7 @@ fn main() {
                 Box::new(move || {
                     for view in &views {
                         let samples = ensemble.sample(std::slice::from_ref(view), &|_| ()).expect("it fits");
-                        black_box(samples.statistics(0, 0, &[]));
+                        black_box(samples.statistics(0, 0, &[]).expect("they are there"));
                     }
                 })
             }),

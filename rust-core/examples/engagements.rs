@@ -15,7 +15,7 @@ fn base(friction_velocity: f64, components: u32, instances: u64) -> Water {
     Parameters {
         wind: Wind::FrictionVelocity(friction_velocity),
         surface: Surface::Instance,
-        footprint: 0.15,
+        footprint: Some(0.15),
         ior: Some(1.33),
         components,
         instances,
@@ -108,9 +108,10 @@ fn stages(repeats: usize) {
         });
         let o = engagement.observers()[0].map(|x| x / 100e3);
         let i = engagement.direction().map(|x| -x);
+        let facets = water.local_lobe().facets;
         let eval = best(repeats, || {
             for _ in 0..RUNS {
-                black_box(water.lobe.facets.eval(black_box(i), o, up()));
+                black_box(facets.eval(black_box(i), o, up()));
             }
         });
         let us = |time: f64| time * 1e6 / RUNS as f64;
@@ -128,12 +129,12 @@ fn stages(repeats: usize) {
 /// Instances per second, statistics included, over components, instances and observers, on all cores.
 fn growth(repeats: usize) {
     let line = |components: u32, instances: u64, observers: usize| {
-        let ensemble = Ensemble::new(&base(8.0, components, instances));
+        let ensemble = Ensemble::new(&base(8.0, components, instances)).expect("the sea has drawn waves");
         let engagement = [fan(30.0, observers)];
         let times = times(repeats, || {
             let samples = ensemble.sample(&engagement, &|_| ()).expect("enough memory");
             for o in 0..observers {
-                black_box(samples.statistics(0, o, &[]));
+                black_box(samples.statistics(0, o, &[]).expect("they are there"));
             }
         });
         println!(
@@ -167,9 +168,13 @@ fn race(repeats: usize, w: f64, incidence: f64) {
     let mut needed = 0.0f64;
     let mut off = vec![];
     let draws = best(2, || {
-        let ensemble = Ensemble { presence: Presence::Drawn, ..Ensemble::new(black_box(&water)) };
+        let ensemble = Ensemble {
+            presence: Presence::Drawn,
+            ..Ensemble::new(black_box(&water)).expect("the sea has drawn waves")
+        };
         let samples = ensemble.sample(&engagement, &|_| ()).expect("enough memory");
-        let statistics: Vec<_> = (0..100).map(|o| samples.statistics(0, o, &[])).collect();
+        let statistics: Vec<_> =
+            (0..100).map(|o| samples.statistics(0, o, &[]).expect("they are there")).collect();
         needed = statistics.iter().map(|s| (s.std / s.mean).powi(2)).fold(0.0, f64::max);
         off = statistics.iter().zip(&means).map(|(s, m)| ((m.f - s.mean) / s.sem).powi(2)).collect();
     });

@@ -54,7 +54,7 @@ fn main() {
         "exact_fresnel" | "as_printed" | "tilt_angles" | "oblique_wind" => {}
         _ => panic!("{case}"),
     }
-    let mut lobe: Lobe<f32> = parameters.configure().expect("the parameters are valid").lobe.cast();
+    let mut lobe: Lobe<f32> = parameters.configure().expect("the parameters are valid").local_lobe().cast();
     if case == "visible_bound" && !on {
         assert!(lobe.facets.bounded);
         lobe.facets.bounded = false;

@@ -28,7 +28,7 @@ fn main() {
     let instance = |w| {
         let water =
             sea(w, Parameters { surface: Surface::Instance, components: 64, ..Parameters::default() });
-        let lobe = InstanceLobe::new(&water);
+        let lobe = InstanceLobe::new(&water).expect("the sea has drawn waves");
         let look = [0.6, 0.0, 0.8];
         move || (0..1000).for_each(|n| _ = black_box(lobe.eval(look, look, [0.37 * f64::from(n), 0.0])))
     };
@@ -38,7 +38,7 @@ fn main() {
         move || _ = black_box(EnsembleLobe::new(&water).expect("enough components"))
     };
     race("table of the ensemble", repeats.min(3), 1, ensemble(8.0), ensemble(0.0));
-    let lobe = sea(24.0, Parameters::default()).lobe;
+    let lobe = sea(24.0, Parameters::default()).local_lobe();
     let view = |z: f64| {
         let direction = [(1.0 - z * z).sqrt(), 0.0, z];
         move || (0..1000).for_each(|_| _ = black_box(lobe.eval(black_box(direction), direction, up())))
@@ -48,7 +48,7 @@ fn main() {
 
 /// A friction velocity in cm/s, D = 0.15 m.
 fn sea(w: f64, parameters: Parameters) -> Water {
-    let parameters = Parameters { wind: Wind::FrictionVelocity(w), footprint: 0.15, ..parameters };
+    let parameters = Parameters { wind: Wind::FrictionVelocity(w), footprint: Some(0.15), ..parameters };
     parameters.configure().expect("the parameters are valid")
 }
 

@@ -32,7 +32,7 @@ fn main() {
     let mut candidates: Vec<Candidate> = vec![("configure".into(), "float64", Box::new(configure))];
     for (sea, slope_measure) in [("default", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)] {
         let parameters = Parameters { slope_measure, ..Parameters::default() };
-        let lobe = parameters.configure().expect("the parameters are valid").lobe;
+        let lobe = parameters.configure().expect("the parameters are valid").local_lobe();
         add::<f64>(&mut candidates, sea, "float64", lobe);
         add::<f32>(&mut candidates, sea, "float32", lobe.cast());
         add_lanes(&mut candidates, sea, lobe.cast());

@@ -22,7 +22,7 @@ fn main() {
         let water = Parameters {
             wind: Wind::FrictionVelocity(8.0),
             surface: Surface::Instance,
-            footprint: 0.15,
+            footprint: Some(0.15),
             components,
             ..Parameters::default()
         };

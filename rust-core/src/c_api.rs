@@ -258,7 +258,10 @@ pub unsafe extern "C" fn prob_water_configure(
             _ => None,
         };
         let empirical = empirical.transpose().map_err(refused)?;
-        let lobe = empirical.as_ref().map_or(water.lobe, |empirical| empirical.sampler);
+        let lobe = match &empirical {
+            Some(empirical) => empirical.sampler,
+            None => water.lobe().map_err(refused)?,
+        };
         *sea = Box::into_raw(Box::new(ProbWater { water, lobe, single: lobe.cast(), empirical }));
         Ok(())
     })

@@ -230,7 +230,7 @@ mod tests {
             {
                 let waves = crate::Parameters {
                     wind: crate::Wind::FrictionVelocity(w),
-                    footprint,
+                    footprint: Some(footprint),
                     fetch,
                     depth,
                     ..crate::Parameters::default()

@@ -7,7 +7,6 @@
 //! let water = Parameters {
 //!     wind: Wind::FrictionVelocity(8.0),
 //!     surface: Surface::Instance,
-//!     footprint: 0.15,
 //!     components: 5,
 //!     instances: 1000,
 //!     ..Parameters::default()
@@ -22,10 +21,10 @@
 //!     &[[5000.0, 0.0, 8660.0], [7000.0, 0.0, 7000.0]],
 //! )?;
 //!
-//! let ensemble = Ensemble::new(&water);
+//! let ensemble = Ensemble::new(&water)?;
 //! ensemble.check(&engagement)?;                                        // memory, before it is taken
 //! let samples = ensemble.sample(&[engagement.clone()], &|_casts| ())?; // on all cores
-//! let statistics = samples.statistics(0, 1, &[0.01]);                  // engagement 0, observer 1, limits in 1/sr
+//! let statistics = samples.statistics(0, 1, &[0.01])?;                 // engagement 0, observer 1, limits in 1/sr
 //!
 //! let exact = Exact::new(&water)?;                                     // infinitely many draws
 //! let mean = exact.means(&engagement)[1].f;
@@ -36,7 +35,9 @@
 
 use crate::brdf::Lobe;
 use crate::cast::Path;
+use crate::error::refuse;
 use crate::level_water::Spreads;
+use crate::parameters::DRAWN;
 use crate::scenario::Engagement;
 use crate::slope_draws::{FEWEST_COMPONENTS, Proposal, SlopeDraws};
 use crate::statistics::{Bounds, Draw, Statistics};
@@ -102,15 +103,19 @@ pub struct Observation {
 
 impl Ensemble {
     /// The report's: random draws and drawn whitecaps.
-    pub fn new(water: &Water) -> Self {
-        Self {
-            water: *water,
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface is flat: it has no waves to draw.
+    pub fn new(water: &Water) -> Result<Self, Error> {
+        let water = water.on(&DRAWN)?;
+        Ok(Self {
+            water,
             waves: water.waves(),
             draws: Draws::Random,
             presence: Presence::Drawn,
             proposal: Proposal::Plain,
             phases_at: ([0.0; 2], 0.0),
-        }
+        })
     }
 
     /// The same, with Sobol draws whose phases count where and when this engagement's beam meets the mean surface.
@@ -127,8 +132,9 @@ impl Ensemble {
         (chance, self.waves.components(numbers).map(move |c| c.with_phase_at(place, time)))
     }
 
-    /// Refuses an engagement whose samples would take more than [`MEMORY`].
+    /// Refuses an engagement whose samples would take more than [`MEMORY`], and slopes of too few components.
     pub fn check(&self, engagement: &Engagement) -> Result<(), Error> {
+        self.possible_proposal()?;
         let instances = self.water.parameters.instances;
         let (one, observers) = (self.bytes(engagement), engagement.observers().len());
         if instances <= MEMORY / one {
@@ -165,11 +171,7 @@ impl Ensemble {
         }
         let count = instances.end - instances.start;
         if count == 0 {
-            return Err(Error::OutOfRange {
-                parameter: "instances",
-                value: "0".into(),
-                allowed: "at least 1".into(),
-            });
+            return refuse("instances", count, "at least 1");
         }
         let mut needed = 0;
         let fits = |e: &&Engagement| {
@@ -226,31 +228,32 @@ impl Ensemble {
         Ok(self.plan(engagements)?.iter().map(seas).sum::<u64>() * self.water.parameters.instances)
     }
 
-    /// How every observer's seas are drawn.
-    fn plan(&self, engagements: &[Engagement]) -> Result<Vec<Plan>, Error> {
+    /// What is proposed, or what is left of it with few components or no waves.
+    fn possible_proposal(&self) -> Result<Proposal, Error> {
         let components = self.water.parameters.components;
         let few = components < FEWEST_COMPONENTS;
-        let proposal = match self.proposal {
+        match self.proposal {
             Proposal::Slopes if few => {
-                let allowed = format!("at least {FEWEST_COMPONENTS} to draw slopes");
-                return Err(Error::OutOfRange {
-                    parameter: "components",
-                    value: components.to_string(),
-                    allowed,
-                });
+                refuse("components", components, format!("at least {FEWEST_COMPONENTS} to draw slopes"))
             }
-            Proposal::Auto if few => Proposal::Plain,
-            _ if self.waves.is_empty() => Proposal::Plain,
-            proposal => proposal,
-        };
-        if proposal == Proposal::Plain {
-            return Ok(engagements.iter().map(|e| Plan(vec![false; e.observers().len()])).collect());
+            Proposal::Auto if few => Ok(Proposal::Plain),
+            _ if self.waves.is_empty() => Ok(Proposal::Plain),
+            proposal => Ok(proposal),
         }
-        if proposal == Proposal::Slopes {
-            return Ok(engagements.iter().map(|e| Plan(vec![true; e.observers().len()])).collect());
-        }
-        let spreads = Spreads::new(&self.water);
-        Ok(engagements.iter().map(|e| Plan(self.needs_slopes(e, &spreads))).collect())
+    }
+
+    /// How every observer's seas are drawn.
+    fn plan(&self, engagements: &[Engagement]) -> Result<Vec<Plan>, Error> {
+        let all =
+            |by_slopes| engagements.iter().map(|e| Plan(vec![by_slopes; e.observers().len()])).collect();
+        Ok(match self.possible_proposal()? {
+            Proposal::Plain => all(false),
+            Proposal::Slopes => all(true),
+            Proposal::Auto => {
+                let spreads = Spreads::new(&self.water);
+                engagements.iter().map(|e| Plan(self.needs_slopes(e, &spreads))).collect()
+            }
+        })
     }
 
     /// Memory that one instance of an engagement takes, at most.

@@ -20,7 +20,7 @@ use crate::characteristic::Component;
 use crate::facet_density::{Cell, FacetDensity};
 use crate::slope_density::{Slopes, WindFrame};
 use crate::surface::normal;
-use crate::{Average, Error, Lobe, Water};
+use crate::{Average, Error, Lobe, Surface, Water};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{SQRT_2, TAU};
@@ -87,8 +87,12 @@ struct Waves {
 }
 
 impl EnsembleLobe {
-    /// Tabulates a sea; refused as by [`crate::Exact::new`].
+    /// Tabulates a sea.
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface is not [`Surface::Ensemble`], and as [`crate::Exact::new`].
     pub fn new(water: &Water) -> Result<Self, Error> {
+        let water = &water.on(&[Surface::Ensemble])?;
         let waves = water.waves();
         let wind = WindFrame::new(waves.wind_azimuth);
         let slopes = Component::new(&waves).map(|component| Slopes::new(&component, water)).transpose()?;

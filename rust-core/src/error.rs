@@ -21,6 +21,14 @@ pub enum Error {
         /// The choices.
         allowed: String,
     },
+    /// A surface of which a function or a type knows nothing.
+    #[error("surface = {value} is not served here: allowed is {allowed}")]
+    Surface {
+        /// Its word in the vocabulary.
+        value: &'static str,
+        /// The words of those that are.
+        allowed: String,
+    },
     /// A value of the wrong kind (a word where a number belongs, say).
     #[error("{parameter} = {value} is not {expected}")]
     WrongType {
@@ -118,6 +126,7 @@ impl Error {
             | Self::UnknownChoice { parameter, .. }
             | Self::WrongType { parameter, .. } => vec![parameter],
             Self::Conflict { first, second, .. } => vec![second, first],
+            Self::Surface { .. } => vec!["surface"],
             Self::Table { .. } => vec!["table"],
             Self::UnknownParameter { .. } | Self::Row { .. } | Self::Index { .. } | Self::Length { .. } => {
                 vec![]

@@ -4,8 +4,8 @@ use crate::brdf::{Parts, cosine};
 use crate::ensemble::Ensemble;
 use crate::real::Vec3;
 use crate::surface::Surface;
-use crate::waves::Component;
-use crate::{Lobe, Real, Water};
+use crate::waves::{Component, Waves};
+use crate::{Error, Lobe, Real, Water};
 
 /// One drawn sea at one time, as the normals and whitecaps of a level surface.
 #[derive(Debug, Clone)]
@@ -26,20 +26,28 @@ pub struct Spot {
 
 impl InstanceLobe {
     /// The first of the seas that the seed draws, at the parameters' time.
-    pub fn new(water: &Water) -> Self {
-        Self::of(water, Ensemble::new(water))
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface is not [`crate::Surface::Instance`].
+    pub fn new(water: &Water) -> Result<Self, Error> {
+        Self::of(water, water.waves())
     }
 
     /// The same for footprints that change from place to place, from the parameters' one upwards: with the waves that
     /// fade there.
-    pub fn fading(water: &Water) -> Self {
-        Self::of(water, Ensemble { waves: water.fading_waves(), ..Ensemble::new(water) })
+    ///
+    /// # Errors
+    /// As [`InstanceLobe::new`].
+    pub fn fading(water: &Water) -> Result<Self, Error> {
+        Self::of(water, water.fading_waves())
     }
 
-    fn of(water: &Water, sea: Ensemble) -> Self {
+    fn of(water: &Water, waves: Waves) -> Result<Self, Error> {
+        let water = water.on(&[crate::Surface::Instance])?;
+        let sea = Ensemble { waves, ..Ensemble::new(&water)? };
         let components: Vec<_> = sea.components(0).1.collect();
         let surface = Surface::new(components.iter().copied(), water.parameters.time);
-        Self { water: *water, components, surface }
+        Ok(Self { water, components, surface })
     }
 
     /// The waves that make the sea.

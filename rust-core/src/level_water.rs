@@ -11,7 +11,7 @@ use crate::shadowing::hidden;
 use crate::surface::normal;
 use crate::{Lobe, Water};
 use glam::{DVec2, DVec3};
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{SQRT_2, TAU};
 
 /// The logarithm of next to nothing, in float32.
 pub(crate) const NOTHING: f64 = -87.0;
@@ -83,6 +83,21 @@ impl Spreads {
     pub fn share(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
         let [hidden_i, hidden_o] = [i, o].map(|v| self.hidden(v));
         (1.0 + hidden_i) / (1.0 + hidden_i + hidden_o)
+    }
+
+    /// Probability that an observer sees nothing of what the source hits: the wave there turns from the observer, were
+    /// drawn slopes Gaussian and met in proportion to the area they show the source, or another hides it (Smith's share).
+    pub fn unseen(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
+        let [i_wind, o_wind] = [i, o].map(|v| self.to_wind(DVec2::new(v[0], v[1])));
+        let spread = (o_wind * self.drawn).length();
+        if spread * 40.0 < o[2] {
+            return 1.0 - self.share(i, o);
+        }
+        let limit = o[2] / spread;
+        let facing = 0.5 * libm::erfc(-limit / SQRT_2);
+        let along = (i_wind * self.drawn).dot(o_wind * self.drawn) / spread;
+        let density = (-0.5 * limit * limit).exp() / TAU.sqrt();
+        (1.0 - self.share(i, o) * (facing + along / i[2].max(LEANING) * density)).clamp(0.0, 1.0)
     }
 
     /// `G/(cos theta_i cos theta_r)` on level water.

@@ -11,7 +11,7 @@
 //!     .configure()
 //!     .unwrap();
 //! let up = [0.0, 0.0, 1.0];
-//! let f = water.lobe.eval(up, up, up); // 1/sr
+//! let f = water.lobe().unwrap().eval(up, up, None); // 1/sr
 //! // Flat sea seen from above: rho_n/(8 pi sigma_u sigma_c) p_ks(0).
 //! assert!((f - 0.1382).abs() < 1e-4, "{f}");
 //! ```

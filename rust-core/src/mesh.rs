@@ -7,7 +7,7 @@ use crate::grid::{CELLS, Grid, Layout, Ring, needed, split};
 use crate::surface::Point;
 use crate::waves::{Component, Draws};
 use crate::wind::bisect;
-use crate::{Ensemble, Error, Parameters, RealisedSurface, Water, WaveSums, slopes, whitecap};
+use crate::{Ensemble, Error, RealisedSurface, Surface, Water, WaveSums, slopes, whitecap};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -64,7 +64,7 @@ impl Foam {
     fn new(water: &Water, fraction: f64, components: &[Component]) -> Self {
         let deviation = whitecap::deviation(water.wind.friction_velocity, fraction).map(|s| 0.01 * s);
         let wanted = deviation.unwrap_or_default().powi(2);
-        let breaking = Water { parameters: Parameters { footprint: BREAKING, ..water.parameters }, ..*water };
+        let breaking = Water { footprint: BREAKING, ..*water };
         let [_, _, theirs] = variances(&breaking.waves());
         let gain = if theirs > 0.0 { (wanted / theirs).sqrt().max(1.0) } else { 1.0 };
         let mut sum = 0.0;
@@ -79,9 +79,13 @@ impl Foam {
 
 impl Mesh {
     /// A sea within the layout's budgets: one instance, its draws stratified.
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface is not [`Surface::Instance`], and as [`Grid::new`].
     pub fn new(water: &Water, layout: &Layout) -> Result<Self, Error> {
-        let grid = Grid::new(layout, water.parameters.footprint)?;
-        let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(water) };
+        let water = &water.on(&[Surface::Instance])?;
+        let grid = Grid::new(layout, water.footprint)?;
+        let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(water)? };
         let components: Vec<_> = sea.components(0).1.collect();
         let fraction = if water.parameters.whitecaps { water.whitecap_fraction } else { 0.0 };
         let foam = (fraction > 0.0).then(|| Foam::new(water, fraction, &components));
@@ -206,7 +210,7 @@ impl fmt::Display for Mesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (grid, layout) = (&self.grid, &self.grid.layout);
         let edge = grid.rings.last().map_or(0.0, |ring| ring.footprint);
-        let center = self.water.parameters.footprint;
+        let center = self.water.footprint;
         writeln!(f, "vertices = {}", grid.vertices)?;
         writeln!(f, "faces = {}", grid.faces)?;
         writeln!(f, "center = {}, {}", layout.center[0], layout.center[1])?;

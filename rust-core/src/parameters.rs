@@ -42,6 +42,16 @@ pub enum Surface {
     Empirical,
 }
 
+/// The surfaces that have drawn waves.
+pub(crate) const DRAWN: [Surface; 3] = [Surface::Instance, Surface::Ensemble, Surface::Empirical];
+
+impl Surface {
+    /// The footprint D in m unless one is given: infinite on a flat surface, which has no waves, else 0.15 m.
+    pub fn default_footprint(self) -> f64 {
+        if DRAWN.contains(&self) { 0.15 } else { f64::INFINITY }
+    }
+}
+
 /// What a sea from afar reflects on average, of what its waves do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Average {
@@ -69,8 +79,9 @@ pub struct Parameters {
     pub wind: Wind,
     /// Azimuth the wind comes from, degrees counter-clockwise from +x.
     pub wind_direction: f64,
-    /// The report's D, m: waves shorter than 2 D are facets. Infinite: all waves are.
-    pub footprint: f64,
+    /// The report's D, m: waves shorter than 2 D are facets. Infinite: all waves are. `None`: the surface's
+    /// [default](Surface::default_footprint).
+    pub footprint: Option<f64>,
     /// Where the facets lie.
     pub surface: Surface,
     /// What the mean over all drawn waves is of; has no effect on other surfaces.
@@ -114,7 +125,7 @@ impl Default for Parameters {
         Self {
             wind: Wind::Speed { speed: 5.0, height: 10.0 },
             wind_direction: 0.0,
-            footprint: f64::INFINITY,
+            footprint: None,
             surface: Surface::Flat,
             average: Average::Power,
             across: Across::Report,
@@ -142,6 +153,8 @@ impl Default for Parameters {
 pub struct Water {
     /// What it was made from.
     pub parameters: Parameters,
+    /// The report's D in use, m.
+    pub footprint: f64,
     /// The wind at every height the model needs.
     pub wind: WindProfile,
     /// Refractive index in use.
@@ -150,8 +163,8 @@ pub struct Water {
     pub variances: [f64; 2],
     /// F_WC (Eq. 51), whether or not whitecaps are blended in.
     pub whitecap_fraction: f64,
-    /// The BRDF.
-    pub lobe: Lobe<f64>,
+    /// The BRDF at a point.
+    pub(crate) lobe: Lobe<f64>,
 }
 
 /// More components than any surface needs: 512 fill a renderer's.
@@ -164,6 +177,30 @@ fn require(parameter: &'static str, value: impl ToString, holds: bool, allowed: 
 }
 
 impl Water {
+    /// The BRDF of a flat surface: facets about the vertical, or about normals that the caller brings, and the whitecaps of
+    /// Eq. 51.
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface has drawn waves. They have BRDFs of their own, [`crate::InstanceLobe`],
+    /// [`crate::EnsembleLobe`] and [`crate::EmpiricalLobe`]; what lies on them is [`Water::local_lobe`].
+    pub fn lobe(&self) -> Result<Lobe<f64>, Error> {
+        let own = match self.parameters.surface {
+            Surface::Flat => return Ok(self.lobe),
+            Surface::Instance => "InstanceLobe",
+            Surface::Ensemble => "EnsembleLobe",
+            Surface::Empirical => "EmpiricalLobe",
+        };
+        let value = self.parameters.surface.name();
+        Err(Error::Surface { value, allowed: format!("flat; {own} is the BRDF of {value}") })
+    }
+
+    /// The BRDF at a point of any surface about that point's own normal: the facets, of waves shorter than two footprints,
+    /// and the whitecaps of Eq. 51. For callers who bring the normals of the longer waves, as those of a mesh. By itself it
+    /// is not the BRDF of a surface with drawn waves.
+    pub fn local_lobe(&self) -> Lobe<f64> {
+        self.lobe
+    }
+
     /// Probability of a whitecap (Eqs. 53-54) where a drawn surface has a vertical acceleration in m/s^2; 0 where
     /// whitecaps are switched off.
     pub fn whitecap_probability(&self, acceleration: f64) -> f64 {
@@ -182,12 +219,12 @@ impl Water {
 
     /// What the waves longer than two footprints are drawn from.
     pub fn waves(&self) -> Waves {
-        self.waves_down_to(self.parameters.footprint)
+        self.waves_down_to(self.footprint)
     }
 
     /// What waves are drawn from that fade out in an octave about two footprints, as [`crate::surface::share`] has it.
     pub fn fading_waves(&self) -> Waves {
-        self.waves_down_to(self.parameters.footprint / SQRT_2)
+        self.waves_down_to(self.footprint / SQRT_2)
     }
 
     fn waves_down_to(&self, footprint: f64) -> Waves {
@@ -203,6 +240,11 @@ impl Water {
 }
 
 impl Parameters {
+    /// The report's D in m: as given, or the surface's [default](Surface::default_footprint).
+    pub fn footprint(&self) -> f64 {
+        self.footprint.unwrap_or_else(|| self.surface.default_footprint())
+    }
+
     /// Checks everything and computes what depends on the parameters alone.
     pub fn configure(&self) -> Result<Water, Error> {
         let wind = self.wind.profile()?;
@@ -212,7 +254,8 @@ impl Parameters {
             self.wind_direction.is_finite(),
             "any finite angle, degrees",
         )?;
-        require("footprint", self.footprint, self.footprint > 0.0, "above 0 m, up to inf")?;
+        let footprint = self.footprint();
+        require("footprint", footprint, footprint > 0.0, "above 0 m, up to inf")?;
         let (m, n, seed) = (self.components, self.instances, self.seed);
         require("components", m, (1..=MOST_COMPONENTS).contains(&m), "1 to 65536")?;
         require("instances", n, (1..=MOST_INSTANCES).contains(&n), "1 to 1000000000")?;
@@ -235,10 +278,11 @@ impl Parameters {
             let salt = if self.water == Body::Ocean { optics::SEA_SALT } else { 0.0 };
             optics::pure_water(self.wavelength) + salt
         });
-        let variances = slopes::variances(&wind, self.footprint);
+        let variances = slopes::variances(&wind, footprint);
         let whitecap_fraction = whitecap::fraction(wind.w10);
         Ok(Water {
             parameters: *self,
+            footprint,
             wind,
             ior,
             variances,

@@ -73,8 +73,8 @@ impl Engagement {
         Self::new(0.0, [-laser * sin, 0.0, laser * cos], Aim::Target([0.0; 3]), &observers)
     }
 
-    /// The same with some of the observers.
-    pub(crate) fn with_observers(&self, keep: impl Fn(usize) -> bool) -> Self {
+    /// The same with the observers whose numbers are kept.
+    pub fn with_observers(&self, keep: impl Fn(usize) -> bool) -> Self {
         let observers = self.observers.iter().enumerate().filter(|(observer, _)| keep(*observer));
         Self { observers: observers.map(|(_, position)| *position).collect(), ..self.clone() }
     }

@@ -27,8 +27,8 @@ const FAINT: f64 = 3e-4;
 const RARE: f64 = 1e-5;
 /// A standard deviation of the acceleration, m/s^2, so small that there is none.
 const STILL: f64 = 1e-6;
-/// Most frequencies and most slopes on an axis: up to there tables take a fraction of a second.
-const MOST: [usize; 2] = [400, 1200];
+/// Most frequencies and most slopes on an axis: up to there tables take a second.
+const MOST: [usize; 2] = [800, 2400];
 /// Integrals reach to so many standard deviations of the facets' lobe, and of its product with the drawn slopes', in
 /// steps that resolve the density's frequencies together with the lobe's to so many over its standard deviation.
 const LOBE_END: f64 = 4.5;
@@ -89,7 +89,7 @@ impl Slopes {
         let (Some(upwind), Some(crosswind)) = (upwind, crosswind) else {
             return Err(Error::OutOfRange {
                 parameter: "footprint",
-                value: water.parameters.footprint.to_string(),
+                value: water.footprint.to_string(),
                 allowed: format!(
                     "one whose facets are not so much finer than the drawn slopes \
                      (standard deviations upwind {:.2e} and {u:.2e}); more components help too",

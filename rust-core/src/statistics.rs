@@ -41,10 +41,11 @@ pub struct Statistics {
     pub mean_upper: f64,
     /// Upper bounds of `over`, alike.
     pub over_upper: Vec<f64>,
-    /// Relative error that the method itself may leave in the mean; 0 for draws.
+    /// Relative error that the method itself may leave in the mean (and in the mean of f times the cosine); 0 for draws.
     pub mean_error: f64,
-    /// Relative error that the method itself may leave in quantiles and shares; 0 for draws.
-    pub quantile_error: f64,
+    /// Error in probability that the method itself may leave in the levels of quantiles, in `over` and in `obscured`; 0 for
+    /// draws.
+    pub share_error: f64,
 }
 
 /// One draw: f in 1/sr, and its weight (1 where all are equally likely).
@@ -121,7 +122,7 @@ impl Statistics {
             mean_upper,
             over_upper,
             mean_error: 0.0,
-            quantile_error: 0.0,
+            share_error: 0.0,
         }
     }
 }

@@ -13,7 +13,7 @@
 //!
 //! # fn main() -> Result<(), prob_water::Error> {
 //! // Switches, components, seed and instances of a table come from here; wind, footprint and angles from the grid.
-//! let sea = Parameters { surface: Surface::Empirical, footprint: 0.15, instances: 256, ..Parameters::default() };
+//! let sea = Parameters { surface: Surface::Empirical, instances: 256, ..Parameters::default() };
 //! let grid = Grid {
 //!     friction_velocity: vec![6.0, 8.0],
 //!     footprint: vec![0.15],
@@ -172,6 +172,7 @@ impl Plan {
     fn sea(&self, friction_velocity: f64, footprint: f64) -> Result<Water, Error> {
         let wind = Wind::FrictionVelocity(friction_velocity);
         let surface = Surface::Empirical;
+        let footprint = Some(footprint);
         Parameters { wind, footprint, surface, wind_direction: 0.0, time: 0.0, ..self.parameters }.configure()
     }
 
@@ -346,7 +347,7 @@ impl Table {
             Wind::Beaufort(b) => ("beaufort", format!("{b} (friction velocity {w:.3} cm/s)")),
         };
         within(name, shown, w, &self.grid.friction_velocity, "cm/s")?;
-        within("footprint", p.footprint.to_string(), p.footprint, &self.grid.footprint, "m")
+        within("footprint", water.footprint.to_string(), water.footprint, &self.grid.footprint, "m")
     }
 
     /// The table at the wind and the footprint of a sea that it knows.
@@ -354,7 +355,7 @@ impl Table {
         self.check(water)?;
         let g = &self.grid;
         let ln = |axis: &[f64]| axis.iter().map(|x| x.ln()).collect::<Vec<_>>();
-        let (w, d) = (water.wind.friction_velocity, water.parameters.footprint);
+        let (w, d) = (water.wind.friction_velocity, water.footprint);
         let plan = Plan { parameters: self.parameters, grid: g.clone() };
         let mut parts = vec![];
         for (a, wa) in weights(&ln(&g.friction_velocity), w.ln()) {

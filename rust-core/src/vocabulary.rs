@@ -151,8 +151,6 @@ const SURFACES: [(&str, Surface); 4] = [
 ];
 const ACROSS: [(&str, Across); 2] = [("report", Across::Report), ("slopes", Across::Slopes)];
 const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Average::Report)];
-/// Footprint of a surface with waves of its own, m, unless one is given.
-const WAVY_FOOTPRINT: f64 = 0.15;
 const WATERS: [(&str, Body); 2] = [("ocean", Body::Ocean), ("fresh", Body::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
@@ -187,7 +185,7 @@ impl Parameters {
             ("friction_velocity", Wind::FrictionVelocity(w)) => number(w),
             ("beaufort", Wind::Beaufort(b)) => number(f64::from(b)),
             ("wind_direction", _) => number(self.wind_direction),
-            ("footprint", _) => number(self.footprint),
+            ("footprint", _) => number(self.footprint()),
             ("surface", _) => word(&self.surface, &SURFACES),
             ("average", _) => word(&self.average, &AVERAGES),
             ("across", _) => word(&self.across, &ACROSS),
@@ -211,19 +209,25 @@ impl Parameters {
     }
 }
 
+impl Surface {
+    /// Its word in the vocabulary.
+    pub fn name(self) -> &'static str {
+        SURFACES.iter().find(|(_, surface)| *surface == self).map_or("", |(name, _)| name)
+    }
+}
+
 impl Water {
-    /// The same, if its surface is one of those that the caller knows.
+    /// The same, if its surface is one of those that the caller serves.
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where it is not.
     pub fn on(self, surfaces: &[Surface]) -> Result<Self, Error> {
-        let name =
-            |surface: &Surface| word(surface, &SURFACES).map_or(String::new(), |name| name.to_string());
-        if surfaces.contains(&self.parameters.surface) {
+        let surface = self.parameters.surface;
+        if surfaces.contains(&surface) {
             return Ok(self);
         }
-        Err(Error::UnknownChoice {
-            parameter: "surface",
-            value: name(&self.parameters.surface),
-            allowed: surfaces.iter().map(name).collect::<Vec<_>>().join(", "),
-        })
+        let allowed = surfaces.iter().map(|surface| surface.name()).collect::<Vec<_>>().join(", ");
+        Err(Error::Surface { value: surface.name(), allowed })
     }
 }
 
@@ -257,7 +261,6 @@ pub struct Builder {
     /// Which wind was given, and as what.
     wind_from: Option<(&'static str, String)>,
     wind_height: Option<f64>,
-    footprint: Option<f64>,
 }
 
 fn conflict(
@@ -306,7 +309,7 @@ impl Builder {
                 self.wind(name, value, Wind::Beaufort(b as u8))?;
             }
             "wind_direction" => p.wind_direction = number(name, value)?,
-            "footprint" => self.footprint = Some(number(name, value)?),
+            "footprint" => p.footprint = Some(number(name, value)?),
             "surface" => p.surface = choice(name, value, &SURFACES)?,
             "average" => p.average = choice(name, value, &AVERAGES)?,
             "across" => p.across = choice(name, value, &ACROSS)?,
@@ -342,11 +345,6 @@ impl Builder {
     /// The parameters, once all have been named.
     pub fn parameters(&self) -> Result<Parameters, Error> {
         let mut p = self.parameters;
-        p.footprint = match (self.footprint, p.surface) {
-            (Some(footprint), _) => footprint,
-            (None, Surface::Flat) => f64::INFINITY,
-            (None, Surface::Instance | Surface::Ensemble | Surface::Empirical) => WAVY_FOOTPRINT,
-        };
         if let Some(h) = self.wind_height {
             match &mut p.wind {
                 Wind::Speed { height, .. } => *height = h,
@@ -430,7 +428,7 @@ mod tests {
             let given = Parameters {
                 wind,
                 wind_direction: -1.0 / 3.0,
-                footprint: 1e-7,
+                footprint: Some(1e-7),
                 surface: Surface::Instance,
                 average: Average::Report,
                 across: Across::Slopes,
@@ -534,14 +532,19 @@ mod tests {
     #[test]
     fn footprint_follows_the_surface() {
         let mut builder = Builder::default();
-        assert_eq!(builder.parameters().unwrap().footprint, f64::INFINITY);
+        let configured = |builder: &Builder| builder.parameters().unwrap().configure().unwrap();
+        assert_eq!(configured(&builder).footprint, f64::INFINITY);
         builder.set("surface", &Value::Text("instance".into())).unwrap();
-        assert_eq!(builder.parameters().unwrap().footprint, 0.15);
+        let water = configured(&builder);
+        // The same in Rust, whatever else is given.
+        assert_eq!(water.footprint, 0.15);
+        let by_hand = Parameters { surface: Surface::Instance, ..Parameters::default() };
+        assert_eq!(by_hand.configure().unwrap().to_string(), water.to_string());
         builder.set("footprint", &Value::Text("inf".into())).unwrap();
-        let water = builder.parameters().unwrap().configure().unwrap();
-        assert_eq!(water.parameters.footprint, f64::INFINITY);
+        let water = configured(&builder);
+        assert_eq!(water.footprint, f64::INFINITY);
         let refused = water.on(&[Surface::Flat, Surface::Ensemble]).unwrap_err().to_string();
-        assert_eq!(refused, "surface = instance is unknown: allowed is flat, ensemble");
+        assert_eq!(refused, "surface = instance is not served here: allowed is flat, ensemble");
         assert!(water.on(&[Surface::Instance]).is_ok());
     }
 

@@ -33,7 +33,7 @@ fn case(seed: u64) -> Case {
     let w = 2.0 * 50f64.powf(rng.random());
     let sea = water(w, |p| {
         p.surface = Surface::Instance;
-        p.footprint = 0.05 * 6f64.powf(rng.random());
+        p.footprint = Some(0.05 * 6f64.powf(rng.random()));
         p.components = rng.random_range(1..=20);
         p.wind_direction = rng.random_range(-180.0..180.0);
     });
@@ -54,7 +54,7 @@ fn case(seed: u64) -> Case {
     let target = DVec3::new(rng.random_range(-1e3..1e3), rng.random_range(-1e3..1e3), 0.0);
     let origin = target - beam * 10f64.powf(rng.random_range(1.0..4.0));
     let k_max = waves.log_range.unwrap()[1].exp() * 100.0;
-    let (shortest, footprint) = (std::f64::consts::TAU / k_max, sea.parameters.footprint);
+    let (shortest, footprint) = (std::f64::consts::TAU / k_max, sea.footprint);
     Case { surface, shortest, footprint, origin, beam, way, distance }
 }
 

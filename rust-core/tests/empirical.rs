@@ -15,7 +15,7 @@ fn sea(w: f64, wind_direction: f64, instances: u64) -> Water {
         wind: Wind::FrictionVelocity(w),
         wind_direction,
         surface: Surface::Empirical,
-        footprint: 0.15,
+        footprint: Some(0.15),
         instances,
         ior: Some(1.33),
         ..Parameters::default()
@@ -44,12 +44,12 @@ fn planes(incidence: f64) -> Planes {
 
 fn rho(water: &Water, i: [f64; 3], o: [f64; 3]) -> f64 {
     let half = (0..3).map(|k| (i[k] + o[k]).powi(2)).sum::<f64>().sqrt() / 2.0;
-    water.lobe.facets.reflectance.eval(half.min(1.0))
+    water.local_lobe().facets.reflectance.eval(half.min(1.0))
 }
 
 /// Mean and standard deviation of f by the full model.
 fn brdf(water: &Water, moments: &Moments, i: [f64; 3], o: [f64; 3]) -> [f64; 2] {
-    moments.brdf(rho(water, i, o), water.lobe.whitecap_brdf)
+    moments.brdf(rho(water, i, o), water.local_lobe().whitecap_brdf)
 }
 
 /// The direction at an angle theta_r in the plane, so far across it.
@@ -91,7 +91,7 @@ fn nodes_follow_the_ray_cast() {
         (56.0, 0.15, 30.0, 80.0),
         (4.0, 0.5, 90.0, 85.0),
     ] {
-        let water = with(&sea(w, azimuth, 8192), |p| p.footprint = footprint);
+        let water = with(&sea(w, azimuth, 8192), |p| p.footprint = Some(footprint));
         let planes = planes(incidence.to_radians());
         let thetas = radians((-7..=7).map(|k| 12.5 * f64::from(k)));
         let directions: Vec<_> = thetas.iter().map(|t| planes.in_plane(*t)).collect();
@@ -100,7 +100,7 @@ fn nodes_follow_the_ray_cast() {
             .collect();
         let cast = with(&water, |p| (p.instances, p.seed) = (40_000, 7));
         let engagement = Engagement::far(incidence, 10e3, &directions, 100e3).unwrap();
-        let ensemble = Ensemble { presence: Presence::Drawn, ..Ensemble::new(&cast) };
+        let ensemble = Ensemble { presence: Presence::Drawn, ..Ensemble::new(&cast).unwrap() };
         let samples = ensemble.sample(&[engagement], &|_| ()).unwrap();
         let peak = nodes[0].iter().map(|m| m.facets).fold(0.0, f64::max);
         let mut count = 0;
@@ -110,7 +110,7 @@ fn nodes_follow_the_ray_cast() {
             let average = found.iter().map(|f| f[0]).sum::<f64>() / 8.0;
             let own = (found.iter().map(|f| (f[0] - average).powi(2)).sum::<f64>() / 7.0).sqrt();
             let [mean, spread] = found[0];
-            let wanted = samples.statistics(0, k, &[]);
+            let wanted = samples.statistics(0, k, &[]).unwrap();
             let off = (mean - wanted.mean) / wanted.sem.hypot(own);
             println!(
                 "w* {w} incidence {incidence} theta_r {:+.1}: {mean:.3e} of {:.3e}, {off:+.2} standard errors, \
@@ -160,7 +160,7 @@ fn held_out(points: usize, seed: u64) -> HeldOut {
         let (incidence, azimuth) = (85.0 * rng.random::<f64>(), 360.0 * rng.random::<f64>());
         let wavelength = geometric(rng.random(), [0.3, 12.0]);
         let water = with(&sea(w, azimuth, 65_536), |p| {
-            (p.footprint, p.wavelength, p.ior, p.seed) = (footprint, wavelength, None, 12_345);
+            (p.footprint, p.wavelength, p.ior, p.seed) = (Some(footprint), wavelength, None, 12_345);
         });
         let full = full(&water);
         let planes = planes(incidence.to_radians());
@@ -339,7 +339,7 @@ fn evaluation_holds_everywhere() {
         (62.9, 1.0, Across::Report),
         (24.0, 0.3, Across::Slopes),
     ] {
-        let water = with(&sea(w, 37.0, 1), |p| (p.footprint, p.across) = (footprint, across));
+        let water = with(&sea(w, 37.0, 1), |p| (p.footprint, p.across) = (Some(footprint), across));
         let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
         let mut direction = |low: f64| {
             let (z, phi): (f64, f64) =
@@ -417,7 +417,7 @@ fn what_the_table_does_not_know() {
         ("friction_velocity", |p| p.wind = Wind::FrictionVelocity(1.9)),
         ("wind_speed", |p| p.wind = Wind::Speed { speed: 30.0, height: 10.0 }),
         ("beaufort", |p| p.wind = Wind::Beaufort(9)),
-        ("footprint", |p| p.footprint = f64::INFINITY),
+        ("footprint", |p| p.footprint = Some(f64::INFINITY)),
     ];
     for (name, change) in refused {
         let error = EmpiricalLobe::new(&with(&water, change), table).unwrap_err();
@@ -477,7 +477,7 @@ fn tables_of_ones_own() {
 #[test]
 fn uncertainties_are_finite_far_from_the_mirror() {
     for across in [Across::Report, Across::Slopes] {
-        let water = with(&sea(2.0, 0.0, 50), |p| (p.ior, p.footprint, p.across) = (None, 0.02, across));
+        let water = with(&sea(2.0, 0.0, 50), |p| (p.ior, p.footprint, p.across) = (None, Some(0.02), across));
         let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
         for source in 0..36 {
             for observer in 0..36 {

@@ -23,7 +23,9 @@ fn flat_sea_albedo_is_at_most_one() {
                         for phi in [0.0, 90.0] {
                             let i = direction(theta, phi);
                             let sum = |steps| {
-                                integrate(&water.lobe, i, UP, steps, |o| water.lobe.eval(i, o, UP) * o[2])
+                                integrate(&water.local_lobe(), i, UP, steps, |o| {
+                                    water.local_lobe().eval(i, o, UP) * o[2]
+                                })
                             };
                             let mut albedo = sum(120);
                             if albedo > 0.97 {
@@ -55,7 +57,8 @@ fn albedo_at_the_largest_index() {
         let water = water(w, |p| p.ior = Some(4.0));
         for theta in [0.0, 80.0, 85.0, 88.0, 89.7] {
             let i = direction(theta, 0.0);
-            let albedo = integrate(&water.lobe, i, UP, 250, |o| water.lobe.eval(i, o, UP) * o[2]);
+            let albedo =
+                integrate(&water.local_lobe(), i, UP, 250, |o| water.local_lobe().eval(i, o, UP) * o[2]);
             assert!(albedo <= 1.0, "w* {w}, {theta} deg: {albedo}");
         }
     }
@@ -65,14 +68,14 @@ fn albedo_at_the_largest_index() {
 #[test]
 fn the_bound_on_calm_water_is_needed() {
     let water = water(0.0, |_| ());
-    assert!(water.lobe.facets.bounded);
-    let mut free = water.lobe;
+    assert!(water.local_lobe().facets.bounded);
+    let mut free = water.local_lobe();
     free.facets.bounded = false;
     let i = direction(89.9, 90.0);
     let albedo = integrate(&free, i, UP, 200, |o| free.eval(i, o, UP) * o[2]);
     assert!(albedo > 5.0, "{albedo}");
     for w in [10.0, 24.0, 97.0] {
-        assert!(!self::water(w, |_| ()).lobe.facets.bounded);
+        assert!(!self::water(w, |_| ()).local_lobe().facets.bounded);
     }
 }
 
@@ -81,22 +84,25 @@ fn the_bound_on_calm_water_is_needed() {
 fn albedo_at_normal_incidence() {
     for w in WINDS {
         let water = water(w, |p| p.slope_measure = SlopeMeasure::Slope);
-        let albedo = integrate(&water.lobe, UP, UP, 300, |o| water.lobe.eval(UP, o, UP) * o[2]);
+        let albedo =
+            integrate(&water.local_lobe(), UP, UP, 300, |o| water.local_lobe().eval(UP, o, UP) * o[2]);
         println!("w* {w}: {albedo:.5}");
         assert!((albedo / 0.0201 - 1.0).abs() < 0.02, "w* {w}: {albedo}");
     }
     // In tilt angles it gains 0.0203, 0.0216, 0.0223 at 8, 56, 224.
     for (w, expected) in [(8.0, 0.0203), (56.0, 0.0216), (224.0, 0.0223)] {
         let water = water(w, |_| ());
-        let albedo = integrate(&water.lobe, UP, UP, 300, |o| water.lobe.eval(UP, o, UP) * o[2]);
+        let albedo =
+            integrate(&water.local_lobe(), UP, UP, 300, |o| water.local_lobe().eval(UP, o, UP) * o[2]);
         assert!((albedo - expected).abs() < 1e-4, "w* {w}: {albedo}");
     }
     // As printed, pi/4: the evidence against Eq. 56's factor.
     let printed = water(8.0, |p| {
         p.readings = Readings::AsPrinted;
-        p.footprint = 0.15;
+        p.footprint = Some(0.15);
     });
-    let albedo = integrate(&printed.lobe, UP, UP, 300, |o| printed.lobe.eval(UP, o, UP) * o[2]);
+    let albedo =
+        integrate(&printed.local_lobe(), UP, UP, 300, |o| printed.local_lobe().eval(UP, o, UP) * o[2]);
     assert!((0.055..0.07).contains(&albedo), "{albedo}");
 }
 
@@ -112,7 +118,7 @@ fn reciprocal_and_finite_about_any_normal() {
                 seas.push(water(w, |p| {
                     p.wind_direction = 33.0;
                     p.whitecaps = true;
-                    (p.footprint, p.readings, p.shadowing) = (footprint, readings, shadowing);
+                    (p.footprint, p.readings, p.shadowing) = (Some(footprint), readings, shadowing);
                 }));
             }
         }
@@ -125,10 +131,10 @@ fn reciprocal_and_finite_about_any_normal() {
             direction(cos.acos().to_degrees(), 360.0 * rng.random::<f64>())
         };
         let (i, o, n) = (draw(3.0), draw(3.0), draw(0.1));
-        let (a, b) = (water.lobe.eval(i, o, n), water.lobe.eval(o, i, n));
+        let (a, b) = (water.local_lobe().eval(i, o, n), water.local_lobe().eval(o, i, n));
         assert!(a.is_finite() && a >= 0.0);
         assert!((a - b).abs() <= 1e-12 * a, "{a} {b} {i:?} {o:?} {n:?}");
-        let single: Lobe<f32> = water.lobe.cast();
+        let single: Lobe<f32> = water.local_lobe().cast();
         let f = single.eval(i.map(|x| x as f32), o.map(|x| x as f32), n.map(|x| x as f32));
         assert!(f.is_finite() && f >= 0.0, "{f} {i:?} {o:?} {n:?}");
         lit += usize::from(a > 0.0);
@@ -145,7 +151,9 @@ fn finite_at_the_edges() {
             [(true, Fresnel::Schlick, 1.33), (false, Fresnel::Exact, 1.0), (false, Fresnel::Schlick, 1.0)]
         {
             let single: Lobe<f32> =
-                water(w, |p| (p.shadowing, p.fresnel, p.ior) = (shadowing, fresnel, Some(ior))).lobe.cast();
+                water(w, |p| (p.shadowing, p.fresnel, p.ior) = (shadowing, fresnel, Some(ior)))
+                    .local_lobe()
+                    .cast();
             for zi in tiny {
                 for zo in tiny {
                     for x in [-1.0f32, 1.0] {
@@ -170,10 +178,10 @@ fn finite_at_the_edges() {
 fn mixture_with_whitecaps() {
     let water = water(56.0, |p| p.whitecaps = true);
     let (i, o) = (direction(40.0, 10.0), direction(35.0, 170.0));
-    let smooth = water.lobe.facets.eval(i, o, UP);
+    let smooth = water.local_lobe().facets.eval(i, o, UP);
     let expected =
         (1.0 - 0.024_587_986_758_358_254) * smooth + 0.024_587_986_758_358_254 * 0.22 / std::f64::consts::PI;
-    assert!((water.lobe.eval(i, o, UP) / expected - 1.0).abs() < 1e-12);
-    assert_eq!(water.lobe.eval(i, direction(91.0, 0.0), UP), 0.0);
+    assert!((water.local_lobe().eval(i, o, UP) / expected - 1.0).abs() < 1e-12);
+    assert_eq!(water.local_lobe().eval(i, direction(91.0, 0.0), UP), 0.0);
     assert!(dot(i, UP) > 0.0);
 }

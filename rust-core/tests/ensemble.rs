@@ -3,13 +3,14 @@
 mod common;
 
 use common::{direction, rows, water};
+use prob_water::ensemble::Sighting;
 use prob_water::{Engagement, Ensemble, Presence, Statistics, Surface, Water};
 
 /// The base scenario of the report's section 8, with a number of instances.
 fn base(friction_velocity: f64, instances: u64) -> Water {
     water(friction_velocity, |p| {
         p.surface = Surface::Instance;
-        p.footprint = 0.15;
+        p.footprint = Some(0.15);
         p.instances = instances;
         p.whitecaps = true;
         p.wavelength = 1.0;
@@ -24,24 +25,24 @@ fn in_plane(incidence: f64, angles: &[f64]) -> Engagement {
 
 fn statistics(ensemble: &Ensemble, engagement: &Engagement) -> Vec<Statistics> {
     let samples = ensemble.sample(std::slice::from_ref(engagement), &|_| ()).unwrap();
-    (0..engagement.observers().len()).map(|o| samples.statistics(0, o, &[])).collect()
+    (0..engagement.observers().len()).map(|o| samples.statistics(0, o, &[]).unwrap()).collect()
 }
 
 /// Mean, standard deviation and mean_f_cos within 4 combined standard errors at every angle, for both winds.
 #[test]
 fn base_scenario_of_the_reference() {
     for rows in rows("scenario_base").chunk_by(|a, b| a[0] == b[0]) {
-        let mut ensemble = Ensemble::new(&base(rows[0][0], 100_000));
+        let mut ensemble = Ensemble::new(&base(rows[0][0], 100_000)).unwrap();
         ensemble.presence = Presence::Expected;
         let angles: Vec<f64> = rows.iter().map(|r| r[5]).collect();
         let engagement = in_plane(rows[0][4], &angles);
         let samples = ensemble.sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
         let mut worst = 0.0f64;
         for (o, r) in rows.iter().enumerate() {
-            let found = samples.statistics(0, o, &[]);
+            let found = samples.statistics(0, o, &[]).unwrap();
             let n = samples.instances() as f64;
             let moment = |power: i32| {
-                samples.of(0, o).map(|(_, _, seen)| (seen.f - found.mean).powi(power)).sum::<f64>() / n
+                samples.of(0, o).unwrap().map(|s| (s.seen.f - found.mean).powi(power)).sum::<f64>() / n
             };
             let sem_of_std = ((moment(4) - found.std.powi(4)) / n).sqrt() / (2.0 * found.std);
             // The reference does not give the error of mean_f_cos: it is the mean's, times the same factor.
@@ -65,7 +66,7 @@ fn base_scenario_of_the_reference() {
 #[test]
 fn converged_maxima() {
     let peak = |water: &Water, incidence: f64, angles: &[f64]| {
-        let mut ensemble = Ensemble::new(water);
+        let mut ensemble = Ensemble::new(water).unwrap();
         ensemble.presence = Presence::Expected;
         let means = statistics(&ensemble, &in_plane(incidence, angles));
         let best = (0..angles.len()).max_by(|a, b| means[*a].mean.total_cmp(&means[*b].mean)).unwrap();
@@ -85,8 +86,8 @@ fn converged_maxima() {
     }
     for (i, expected) in [0.1346, 0.1376, 0.1413, 0.1449, 0.1485, 0.1518].into_iter().enumerate() {
         let mut p = base(8.0, 200_000).parameters;
-        p.footprint = 0.05 * (i + 1) as f64;
-        check(format!("D {:.2}", p.footprint), peak(&p.configure().unwrap(), 30.0, &angles), expected);
+        p.footprint = Some(0.05 * (i + 1) as f64);
+        check(format!("D {:.2}", p.footprint()), peak(&p.configure().unwrap(), 30.0, &angles), expected);
     }
     for (incidence, expected) in [(0.0, 0.1056), (15.0, 0.1132), (45.0, 0.2423), (60.0, 1.48)] {
         let all: Vec<f64> = (0..=36).map(|a| 2.5 * f64::from(a)).filter(|a| *a < 89.0).collect();
@@ -101,12 +102,12 @@ fn bits(ensemble: &Ensemble, engagements: &[Engagement]) -> Vec<u64> {
     let mut bits = vec![];
     for (e, engagement) in engagements.iter().enumerate() {
         for o in 0..engagement.observers().len() {
-            let s = samples.statistics(e, o, &[0.01, 0.1]);
+            let s = samples.statistics(e, o, &[0.01, 0.1]).unwrap();
             bits.extend(
                 [s.mean, s.std, s.min, s.max, s.mean_f_cos, s.obscured, s.whitecap].map(f64::to_bits),
             );
             bits.extend(s.quantiles.iter().chain(&s.over).map(|x| x.to_bits()));
-            bits.extend(samples.of(e, o).flat_map(|(i, hit, seen)| {
+            bits.extend(samples.of(e, o).unwrap().flat_map(|Sighting { instance: i, hit, seen, .. }| {
                 let [x, y, z] = hit.position;
                 [i, x.to_bits(), y.to_bits(), z.to_bits(), seen.f.to_bits(), seen.cos_r.to_bits()]
             }));
@@ -121,7 +122,7 @@ fn determined_by_the_seed_alone() {
     let engagements: Vec<_> =
         [10.0, 80.0, 30.0].iter().map(|i| in_plane(*i, &[0.0, 30.0, 60.0, 85.0])).collect();
     for draws in [prob_water::Draws::Random, prob_water::Draws::Sobol] {
-        let mut ensemble = Ensemble::new(&base(40.0, 333));
+        let mut ensemble = Ensemble::new(&base(40.0, 333)).unwrap();
         ensemble.draws = draws;
         let all = [1, 2, 7].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -150,7 +151,7 @@ fn compare_options(w: f64) {
         for (seed, mean) in means.iter_mut().enumerate() {
             let mut water = base(w, 1024);
             water.parameters.seed = seed as u64;
-            let ensemble = Ensemble { presence, ..Ensemble::new(&water) };
+            let ensemble = Ensemble { presence, ..Ensemble::new(&water).unwrap() };
             let ensemble = if even { ensemble.around(&engagement) } else { ensemble };
             let found = statistics(&ensemble, &engagement);
             *mean = [found[0].mean, found[1].mean, found[2].mean];
@@ -186,21 +187,21 @@ fn what_waves_cover_is_obscured() {
         &[[5.0, 0.0, 0.05], [0.0, 0.0, 500.0]],
     )
     .unwrap();
-    let found = statistics(&Ensemble::new(&base(24.0, 2000)), &low);
+    let found = statistics(&Ensemble::new(&base(24.0, 2000)).unwrap(), &low);
     // Half of the water stands above the mean surface: there both are covered.
     assert!(found[0].obscured > 0.5 && found[1].obscured > 0.35 && found[1].obscured < 0.5, "{found:?}");
-    let calm = statistics(&Ensemble::new(&base(0.0, 10)), &low);
+    let calm = statistics(&Ensemble::new(&base(0.0, 10)).unwrap(), &low);
     assert!(calm.iter().all(|s| s.obscured == 0.0 && s.std == 0.0));
 }
 
 #[test]
 fn memory_is_asked_for_before_it_is_taken() {
     let engagement = in_plane(30.0, &[0.0; 20]);
-    let error = Ensemble::new(&base(8.0, 1_000_000_000)).check(&engagement).unwrap_err().to_string();
+    let error = Ensemble::new(&base(8.0, 1_000_000_000)).unwrap().check(&engagement).unwrap_err().to_string();
     assert!(
         error.contains("instances") && error.contains("20 observers") && error.contains("GiB"),
         "{error}"
     );
-    assert!(Ensemble::new(&base(8.0, 1_000_000)).check(&engagement).is_ok());
-    assert!(Ensemble::new(&base(8.0, 5)).sample(&[], &|_| ()).is_err());
+    assert!(Ensemble::new(&base(8.0, 1_000_000)).unwrap().check(&engagement).is_ok());
+    assert!(Ensemble::new(&base(8.0, 5)).unwrap().sample(&[], &|_| ()).is_err());
 }

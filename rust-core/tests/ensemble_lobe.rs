@@ -8,7 +8,7 @@ use prob_water::{Average, Engagement, Ensemble, EnsembleLobe, Exact, Presence, S
 fn sea(w: f64, change: impl FnOnce(&mut prob_water::Parameters)) -> Water {
     water(w, |p| {
         p.surface = Surface::Ensemble;
-        p.footprint = 0.15;
+        p.footprint = Some(0.15);
         p.whitecaps = true;
         change(p);
     })
@@ -42,9 +42,9 @@ fn against_the_ray_cast(w: f64, incidence: f64, instances: u64) -> f64 {
     let report = EnsembleLobe::new(&averaged(&water, Average::Report)).unwrap();
     let views = views(incidence);
     let engagement = Engagement::far(incidence, 10e3, &views, 1e6).unwrap();
-    let ensemble = Ensemble { presence: Presence::Expected, ..Ensemble::new(&water) };
+    let ensemble = Ensemble { presence: Presence::Expected, ..Ensemble::new(&water).unwrap() };
     let samples = ensemble.sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
-    let all: Vec<_> = (0..views.len()).map(|o| samples.statistics(0, o, &[])).collect();
+    let all: Vec<_> = (0..views.len()).map(|o| samples.statistics(0, o, &[]).unwrap()).collect();
     let peak = all.iter().map(|s| s.mean_f_cos).fold(0.0, f64::max);
     let source = engagement.direction().map(|x| -x);
     let mut worst = [(0.0f64, String::new()), (0.0, String::new())];
@@ -53,7 +53,8 @@ fn against_the_ray_cast(w: f64, incidence: f64, instances: u64) -> f64 {
             continue;
         }
         let n = instances as f64;
-        let square = samples.of(0, o).map(|(_, _, x)| (x.f * x.cos_r.max(0.0)).powi(2)).sum::<f64>() / n;
+        let square =
+            samples.of(0, o).unwrap().map(|s| (s.seen.f * s.seen.cos_r.max(0.0)).powi(2)).sum::<f64>() / n;
         let error = ((square - s.mean_f_cos.powi(2)) / n).sqrt();
         let share = if view[2] > 0.4999 { 0.02 } else { 0.10 };
         let mut compare = |which: usize, found: f64, mean: f64, error: f64| {
@@ -101,7 +102,7 @@ fn follows_the_ray_cast_closely() {
 fn follows_the_exact_means() {
     let seas = [
         sea(2.0, |p| p.wind_direction = 30.0),
-        sea(8.0, |p| p.footprint = 0.5),
+        sea(8.0, |p| p.footprint = Some(0.5)),
         sea(24.0, |_| ()),
         sea(40.0, |p| p.slope_measure = prob_water::SlopeMeasure::Slope),
         sea(40.0, |p| p.shadowing = false),
@@ -140,7 +141,7 @@ fn follows_the_reports_mean() {
     let seas = [
         sea(4.0, |p| (p.average, p.wind_direction) = (Average::Report, 30.0)),
         sea(8.0, report),
-        sea(8.0, |p| (p.average, p.footprint) = (Average::Report, 0.5)),
+        sea(8.0, |p| (p.average, p.footprint) = (Average::Report, Some(0.5))),
         sea(24.0, |p| (p.average, p.wind_direction) = (Average::Report, 30.0)),
         sea(40.0, |p| {
             (p.average, p.slope_measure) = (Average::Report, prob_water::SlopeMeasure::Slope);

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 fn sea(friction_velocity: f64, footprint: f64, components: u32) -> Water {
     water(friction_velocity, |p| {
         p.surface = Surface::Instance;
-        p.footprint = footprint;
+        p.footprint = Some(footprint);
         p.components = components;
         p.wind_direction = 20.0;
         p.whitecaps = true;
@@ -71,8 +71,8 @@ fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec
                 let cos = dot(n, *view);
                 let f = match (cos > 0.0, foam) {
                     (false, _) => 0.0,
-                    (true, true) => water.lobe.whitecap_brdf,
-                    (true, false) => water.lobe.facets.eval(source, *view, n),
+                    (true, true) => water.local_lobe().whitecap_brdf,
+                    (true, false) => water.local_lobe().facets.eval(source, *view, n),
                 };
                 for (m, value) in [f, f * f, f * cos].into_iter().enumerate() {
                     sums.values[v][m] += area * value;
@@ -159,8 +159,8 @@ fn compare_with_the_ray_cast(water: &Water, incidence: f64) -> Worst {
     let views = views(incidence, 70.0);
     let engagement = Engagement::far(incidence, 10e3, &views, 1e6).unwrap();
     let exact = Exact::new(water).unwrap().means(&engagement);
-    let samples = Ensemble::new(water).sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
-    let drawn: Vec<_> = (0..views.len()).map(|o| samples.statistics(0, o, &[])).collect();
+    let samples = Ensemble::new(water).unwrap().sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
+    let drawn: Vec<_> = (0..views.len()).map(|o| samples.statistics(0, o, &[]).unwrap()).collect();
     let peak = drawn.iter().map(|d| d.mean).fold(0.0, f64::max);
     let mut worst = Worst::default();
     for (view, (exact, drawn)) in views.iter().zip(exact.iter().zip(drawn)) {
@@ -243,10 +243,11 @@ fn low_views() {
             let views: Vec<_> = angles.iter().map(|a| direction(*a, 0.0)).collect();
             let engagement = Engagement::far(incidence, 10e3, &views, 1e6).unwrap();
             let exact = Exact::new(&water).unwrap().statistics(&engagement, &[]);
-            let samples = Ensemble::new(&water).sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
+            let samples =
+                Ensemble::new(&water).unwrap().sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
             print!("w* {w:2} theta_i {incidence}:");
             for (o, exact) in exact.iter().enumerate() {
-                let drawn = samples.statistics(0, o, &[]);
+                let drawn = samples.statistics(0, o, &[]).unwrap();
                 let off = 100.0 * (exact.mean / drawn.mean - 1.0);
                 let error = 100.0 * drawn.sem / drawn.mean;
                 print!("  {off:+.1} +- {error:.1} ({:.3} {:.3})", exact.obscured, drawn.obscured);
@@ -264,7 +265,7 @@ fn distributions() {
         with_instances(
             water(w, |p| {
                 p.surface = Surface::Instance;
-                p.footprint = 0.15;
+                p.footprint = Some(0.15);
                 p.whitecaps = true;
                 change(p);
             }),
@@ -274,13 +275,13 @@ fn distributions() {
     let seas = [
         ("base", 30.0, sea(8.0, &|_| ())),
         ("light air", 30.0, sea(0.6, &|_| ())),
-        ("footprint 5", 30.0, sea(8.0, &|p| p.footprint = 5.0)),
+        ("footprint 5", 30.0, sea(8.0, &|p| p.footprint = Some(5.0))),
         ("steep", 60.0, sea(56.0, &|p| p.components = 20)),
         ("fetch 800", 40.0, sea(24.0, &|p| p.fetch = 800.0)),
         ("fetch 5000, shallow", 40.0, sea(24.0, &|p| (p.fetch, p.depth) = (5e3, 0.5))),
-        ("hurricane", 20.0, sea(238.0, &|p| p.footprint = f64::INFINITY)),
-        ("hurricane, shallow", 20.0, sea(200.0, &|p| (p.footprint, p.depth) = (5.0, 0.2))),
-        ("hurricane, no depth", 20.0, sea(238.0, &|p| (p.footprint, p.depth) = (5.0, 1e-200))),
+        ("hurricane", 20.0, sea(238.0, &|p| p.footprint = Some(f64::INFINITY))),
+        ("hurricane, shallow", 20.0, sea(200.0, &|p| (p.footprint, p.depth) = (Some(5.0), 0.2))),
+        ("hurricane, no depth", 20.0, sea(238.0, &|p| (p.footprint, p.depth) = (Some(5.0), 1e-200))),
         ("slopes", 10.0, sea(40.0, &|p| p.slope_measure = prob_water::SlopeMeasure::Slope)),
         ("as printed", 30.0, sea(16.0, &|p| p.readings = prob_water::Readings::AsPrinted)),
         ("calm", 30.0, sea(0.0, &|_| ())),
@@ -290,14 +291,15 @@ fn distributions() {
         let views: Vec<_> = [0.0, 30.0, 45.0, 60.0].map(|a| direction(a, 0.0)).to_vec();
         let engagement = Engagement::far(incidence, 10e3, &views, 1e6).unwrap();
         let exact = Exact::new(&water).unwrap().statistics(&engagement, &[]);
-        let samples = Ensemble::new(&water).sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
+        let samples =
+            Ensemble::new(&water).unwrap().sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
         let n = samples.instances() as f64;
         let mut worst = 0.0f64;
         for (o, exact) in exact.iter().enumerate() {
             // From just below each quantile and above it: a whitecap's f is a lump, and so is 0.
             let below = |q: f64| if q > 0.0 { q * (1.0 - 1e-9) } else { -1.0 };
             let limits: Vec<_> = exact.quantiles.iter().flat_map(|q| [below(*q), *q]).collect();
-            let drawn = samples.statistics(0, o, &limits);
+            let drawn = samples.statistics(0, o, &limits).unwrap();
             let off = (exact.mean - drawn.mean).abs();
             assert!(off <= 0.01 * drawn.mean + 4.0 * drawn.sem + 1e-6, "{name} {o}: {off} of {}", drawn.mean);
             for (q, level) in prob_water::ensemble::QUANTILES.iter().enumerate() {
@@ -330,7 +332,8 @@ fn distributions() {
             // Exceedance is the other way round.
             let half = exact.quantiles[1];
             let again = Exact::new(&water).unwrap().statistics(&engagement, &[half])[o].over[0];
-            let lump = exact.quantiles[0] > 0.999 * half || half == water.lobe.whitecap_brdf || half == 0.0;
+            let lump =
+                exact.quantiles[0] > 0.999 * half || half == water.local_lobe().whitecap_brdf || half == 0.0;
             assert!(lump || (again - 0.5).abs() < 0.01, "{name} {o}: {again}");
         }
         println!("{name}: probabilities off by at most {worst:.4}, whitecaps {:.4}", exact[0].whitecap);

@@ -32,7 +32,7 @@ fn seas() -> Vec<Parameters> {
         for footprint in [1e-3, 0.15, f64::INFINITY] {
             let plain = Parameters {
                 wind: Wind::FrictionVelocity(w),
-                footprint,
+                footprint: Some(footprint),
                 whitecaps: false,
                 ..Parameters::default()
             };
@@ -124,14 +124,14 @@ fn tilt2(sea: &Parameters, sigmas: [f64; 2], [i, o, n]: [[f64; 3]; 3]) -> f64 {
 /// The largest and the median error of `f` against float64, over the lobe without Gram-Charlier, for U^2 + C^2 < 55.
 fn errors(f: &[f32], sea: &Parameters, [i, o, n]: &[Vectors; 3], wavy: bool) -> [f64; 2] {
     let water = sea.configure().unwrap();
-    let plain = Parameters { gram_charlier: false, ..*sea }.configure().unwrap().lobe;
+    let plain = Parameters { gram_charlier: false, ..*sea }.configure().unwrap().local_lobe();
     let sigmas = water.variances.map(f64::sqrt);
     let mut errors: Vec<f64> = (0..f.len())
         .filter_map(|k| {
             let at = [i, o, n].map(|v| wide(v[k]));
             let [i, o, n] = at;
             let value = |lobe: &Lobe<f64>| lobe.eval(i, o, wavy.then_some(n));
-            let (exact, size) = (value(&water.lobe), value(&plain));
+            let (exact, size) = (value(&water.local_lobe()), value(&plain));
             (tilt2(sea, sigmas, at) < 55.0 && size > 0.0).then(|| (f64::from(f[k]) - exact).abs() / size)
         })
         .collect();
@@ -150,7 +150,7 @@ fn lanes_follow_float64() {
             let tables = all.each_ref().map(Table::of);
             let [i, o, n] = tables.each_ref().map(Table::columns);
             let columns = Columns::new(i, o, wavy.then_some(n)).unwrap();
-            let lobe = sea.configure().unwrap().lobe.cast();
+            let lobe = sea.configure().unwrap().local_lobe().cast();
             for level in levels() {
                 let mut f = vec![f32::NAN; 500];
                 columns.eval_on(level, &lobe, &mut f).unwrap();
@@ -181,10 +181,10 @@ fn densities_follow_float64() {
             let tables = all.each_ref().map(Table::of);
             let [i, o, n] = tables.each_ref().map(Table::columns);
             let mut pdf = vec![f32::NAN; 300];
-            Columns::new(i, o, wavy.then_some(n)).unwrap().pdf(&water.lobe.cast(), &mut pdf).unwrap();
+            Columns::new(i, o, wavy.then_some(n)).unwrap().pdf(&water.local_lobe().cast(), &mut pdf).unwrap();
             for k in 0..300 {
                 let normal = wavy.then(|| wide(all[2][k]));
-                let exact = water.lobe.pdf(wide(all[0][k]), wide(all[1][k]), normal);
+                let exact = water.local_lobe().pdf(wide(all[0][k]), wide(all[1][k]), normal);
                 // On a wave a tilt is a difference: what rounding adds grows with its number of standard deviations.
                 let sigma = water.variances[0].min(water.variances[1]).sqrt();
                 let bound = 1e-4 + if wavy { 1e-5 / sigma } else { 0.0 };
@@ -202,7 +202,7 @@ fn rows_are_independent() {
     let all = rows(&sea, true, 40_000, &mut StdRng::seed_from_u64(3));
     let tables = all.each_ref().map(Table::of);
     let [i, o, n] = tables.each_ref().map(Table::columns);
-    let lobe: Lobe<f32> = sea.configure().unwrap().lobe.cast();
+    let lobe: Lobe<f32> = sea.configure().unwrap().local_lobe().cast();
     let mut f = vec![0.0; 40_000];
     Columns::new(i, o, Some(n)).unwrap().eval(&lobe, &mut f).unwrap();
     for length in (0..40).chain([8191, 8192, 8193]) {
@@ -238,7 +238,7 @@ fn finite_and_non_negative() {
     let tilted: Vectors = pairs.iter().map(|_| direction(&mut rng).map(|x| x as f32)).collect();
     let [ic, oc, nc] = [&i, &o, &tilted].map(Table::of);
     for sea in seas() {
-        let lobe: Lobe<f32> = Parameters { whitecaps: true, ..sea }.configure().unwrap().lobe.cast();
+        let lobe: Lobe<f32> = Parameters { whitecaps: true, ..sea }.configure().unwrap().local_lobe().cast();
         for normals in [None, Some(nc.columns())] {
             let columns = Columns::new(ic.columns(), oc.columns(), normals).unwrap();
             for level in levels() {
@@ -274,7 +274,7 @@ fn bad_rows_are_named() {
     let short = [&good.0[0][..], &good.0[1][..99], &good.0[2][..]];
     let message = refused(Columns::new(good.columns(), short, None).unwrap_err());
     assert!(message.contains("to_observer holds 99 rows, expected 100"), "{message}");
-    let lobe = Parameters::default().configure().unwrap().lobe.cast();
+    let lobe = Parameters::default().configure().unwrap().local_lobe().cast();
     let columns = Columns::new(good.columns(), good.columns(), None).unwrap();
     assert!(columns.eval(&lobe, &mut [0.0; 99]).is_err());
     // As long as one may be and as another may not.

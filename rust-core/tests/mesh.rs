@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 fn sea(w: f64, footprint: f64, seed: u64) -> Water {
     water(w, |p| {
         p.surface = Surface::Instance;
-        p.footprint = footprint;
+        p.footprint = Some(footprint);
         p.components = 512;
         p.seed = seed;
         p.whitecaps = true;
@@ -110,7 +110,8 @@ fn vertices_are_the_surface() {
     let water = sea(16.0, 0.2, 3);
     let mesh = Mesh::new(&water, &small(4.0, 100_000)).unwrap();
     assert_eq!(mesh.grid.growth, 0.0);
-    let all = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(&water) };
+    let all =
+        Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(&water).unwrap() };
     let truth = RealisedSurface::new(all.components(0).1.map(|c| c.seen_at(0.2)), 7.5);
     let Vertices { positions, normals, .. } = mesh.vertices(7.5);
     for (position, normal) in positions.chunks(3).zip(normals.chunks(3)) {
@@ -153,7 +154,8 @@ fn stratified_draws_carry_the_spectrum() {
         let expected = integrals(&waves, 1e-9);
         let ratios = (0..SEEDS).map(|seed| {
             let mut found = [0.0; 3];
-            let sea = Ensemble { draws: Draws::Stratified, ..Ensemble::new(&self::sea(w, 0.15, seed)) };
+            let sea =
+                Ensemble { draws: Draws::Stratified, ..Ensemble::new(&self::sea(w, 0.15, seed)).unwrap() };
             for c in sea.components(0).1 {
                 let energy = 0.5 * c.amplitude.powi(2);
                 let along = (c.azimuth - waves.wind_azimuth).cos().powi(2);
@@ -280,7 +282,7 @@ fn whitecap_fraction() {
     }
     // None in a calm, none where they are switched off.
     let off = water(24.0, |p| {
-        p.footprint = 0.15;
+        p.footprint = Some(0.15);
         p.whitecaps = false;
     });
     for water in [sea(0.0, 0.15, 0), off] {

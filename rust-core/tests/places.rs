@@ -21,8 +21,12 @@ fn tabulated_facets() {
             let table = FacetTable::new(&parameters.configure().unwrap());
 
             for footprint in [3.1e-3, 0.0177, 0.15, 0.61, 4.7, 133.0, 2.2e4, f64::INFINITY] {
-                let exact = Parameters { footprint, ..parameters }.configure().unwrap().lobe.facets;
-                let mut found = parameters.configure().unwrap().lobe.facets;
+                let exact = Parameters { footprint: Some(footprint), ..parameters }
+                    .configure()
+                    .unwrap()
+                    .local_lobe()
+                    .facets;
+                let mut found = parameters.configure().unwrap().local_lobe().facets;
                 table.set(&mut found, footprint);
                 let sigma = (found.sigma_u / exact.sigma_u - 1.0).abs();
                 assert!(sigma < if footprint < 0.01 { 1e-3 } else { 1e-4 }, "{w} {footprint} {sigma}");
@@ -53,7 +57,7 @@ fn instances_average_to_the_ensemble() {
         let parameters = Parameters {
             wind: Wind::FrictionVelocity(w),
             surface: Surface::Ensemble,
-            footprint: 0.15,
+            footprint: Some(0.15),
             components,
             shadowing: false,
             wind_direction: 25.0,
@@ -65,7 +69,7 @@ fn instances_average_to_the_ensemble() {
         let mut sums = [[0.0; 2]; 4];
         for seed in 0..seeds {
             let water = Parameters { surface: Surface::Instance, seed, ..parameters }.configure().unwrap();
-            let instance = InstanceLobe::new(&water);
+            let instance = InstanceLobe::new(&water).unwrap();
             for (sum, (theta, to, phi)) in sums.iter_mut().zip(cases) {
                 let (i, o) = (direction(theta, 0.0), direction(to, phi));
                 // Far from each other.

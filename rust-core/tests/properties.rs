@@ -70,7 +70,7 @@ fn sea() -> impl Strategy<Value = Water> {
         |(w, footprint, wind_direction, wavelength, on)| {
             let parameters = Parameters {
                 wind: Wind::FrictionVelocity(w),
-                footprint,
+                footprint: Some(footprint),
                 wind_direction,
                 wavelength,
                 whitecaps: on[0],
@@ -161,7 +161,7 @@ proptest! {
         let parameters = Parameters {
             wind,
             wind_direction: if wind_direction.is_finite() { wind_direction } else { -0.0 },
-            footprint: positive(footprint),
+            footprint: Some(positive(footprint)),
             time: if time.abs() <= 1e9 { time } else { -0.0 },
             depth: positive(depth),
             fetch: positive(fetch),
@@ -189,7 +189,7 @@ proptest! {
     #[test]
     fn reciprocal(sea in sea(), i in angles(), o in angles()) {
         let [i, o] = [i, o].map(|(theta, phi)| direction(theta, phi));
-        let (there, back) = (sea.lobe.eval(i, o, up()), sea.lobe.eval(o, i, up()));
+        let (there, back) = (sea.local_lobe().eval(i, o, up()), sea.local_lobe().eval(o, i, up()));
         prop_assert!(near(there, back, 1e-9), "{} {}", there, back);
     }
 
@@ -202,8 +202,8 @@ proptest! {
         let smooth = Parameters { gram_charlier: false, ..p }.configure().unwrap();
         let [a, b] = [i, o].map(|(theta, phi)| direction(theta, phi));
         let [c, d] = [i, o].map(|(theta, phi)| direction(theta, phi + turn));
-        let (before, after) = (sea.lobe.eval(a, b, up()), turned.lobe.eval(c, d, up()));
-        let size = before.max(smooth.lobe.eval(a, b, up()));
+        let (before, after) = (sea.local_lobe().eval(a, b, up()), turned.local_lobe().eval(c, d, up()));
+        let size = before.max(smooth.local_lobe().eval(a, b, up()));
         prop_assert!((before - after).abs() <= 1e-7 * size + 1e-250, "{} {}", before, after);
     }
 

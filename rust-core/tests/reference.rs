@@ -15,7 +15,7 @@ fn water(friction_velocity: f64, footprint: f64, ior: f64, azimuth: f64) -> Para
     Parameters {
         wind: Wind::FrictionVelocity(friction_velocity),
         wind_direction: azimuth.to_degrees(),
-        footprint,
+        footprint: Some(footprint),
         ior: Some(ior),
         whitecaps: false,
         ..Parameters::default()
@@ -102,7 +102,7 @@ fn facets_about_any_normal() {
     let rows = rows("facet");
     let mut worst = 0.0f64;
     for r in &rows {
-        let lobe = water(r[0], r[2], r[3], r[1]).configure().unwrap().lobe;
+        let lobe = water(r[0], r[2], r[3], r[1]).configure().unwrap().local_lobe();
         let f = lobe.eval([r[4], r[5], r[6]], [r[7], r[8], r[9]], [r[10], r[11], r[12]]);
         if r[13] > 0.0 {
             worst = worst.max((f / r[13] - 1.0).abs());
@@ -118,14 +118,14 @@ fn facets_in_float32() {
     let mut errors = Vec::new();
     for r in rows("facet") {
         let water = water(r[0], r[2], r[3], r[1]).configure().unwrap();
-        let single: Lobe<f32> = water.lobe.cast();
+        let single: Lobe<f32> = water.local_lobe().cast();
         let v = |k: usize| [r[k] as f32, r[k + 1] as f32, r[k + 2] as f32];
         let wide = |v: [f32; 3]| v.map(f64::from);
         let (i, o, n) = (v(4), v(7), v(10));
-        let mut gaussian = water.lobe;
+        let mut gaussian = water.local_lobe();
         gaussian.facets.gram_charlier = false;
         let size = gaussian.eval(wide(i), wide(o), wide(n));
-        let exact = water.lobe.eval(wide(i), wide(o), wide(n));
+        let exact = water.local_lobe().eval(wide(i), wide(o), wide(n));
         if size > 1e-8 {
             errors.push((f64::from(single.eval(i, o, n)) - exact).abs() / size);
         }

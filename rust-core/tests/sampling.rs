@@ -27,12 +27,13 @@ fn draws_follow_the_density_about_any_normal() {
                     }
                     let tests: [fn([f64; 3]) -> f64; 4] =
                         [|_| 1.0, |o| o[0], |o| (3.0 * o[1]).sin(), |o| o[2] * o[2]];
-                    let expected =
-                        tests.map(|g| integrate(&water.lobe, i, n, 400, |o| g(o) * water.lobe.pdf(i, o, n)));
+                    let expected = tests.map(|g| {
+                        integrate(&water.local_lobe(), i, n, 400, |o| g(o) * water.local_lobe().pdf(i, o, n))
+                    });
                     let count = 40_000;
                     let (mut sum, mut square) = ([0.0; 4], [0.0; 4]);
                     for _ in 0..count {
-                        let s = water.lobe.sample(i, n, [rng.random(), rng.random(), rng.random()]);
+                        let s = water.local_lobe().sample(i, n, [rng.random(), rng.random(), rng.random()]);
                         if s.pdf > 0.0 {
                             for k in 0..4 {
                                 let g = tests[k](s.direction);
@@ -63,7 +64,7 @@ fn draws_follow_the_density_about_any_normal() {
 #[test]
 fn a_draw_reports_its_density_and_value() {
     let mut rng = StdRng::seed_from_u64(5);
-    let lobe = water(24.0, |p| p.whitecaps = true).lobe;
+    let lobe = water(24.0, |p| p.whitecaps = true).local_lobe();
     let single: Lobe<f32> = lobe.cast();
     let mut drawn = 0;
     for _ in 0..20_000 {
@@ -104,7 +105,7 @@ fn weights_are_bounded() {
                     p.slope_measure = slope_measure;
                     p.gram_charlier = gram_charlier;
                 })
-                .lobe;
+                .local_lobe();
                 let bound = match (slope_measure, gram_charlier) {
                     (SlopeMeasure::Slope, false) => 1.23,
                     (SlopeMeasure::Slope, true) => 2.1,

@@ -37,17 +37,21 @@ fn same(value: impl Fn(&Row) -> Vec<f64> + Sync) {
 }
 
 fn drawn(surface: Surface) -> Water {
-    water(24.0, |p| (p.surface, p.footprint, p.whitecaps) = (surface, 0.15, true))
+    water(24.0, |p| (p.surface, p.footprint, p.whitecaps) = (surface, Some(0.15), true))
 }
 
 #[test]
 fn lobes() {
     let sea = water(2.0, |p| p.whitecaps = true);
-    let single = sea.lobe.cast::<f32>();
+    let single = sea.local_lobe().cast::<f32>();
     same(|(i, o, u)| {
-        let s = sea.lobe.sample(*i, up(), *u);
+        let s = sea.local_lobe().sample(*i, up(), *u);
         let [i32, o32] = [i, o].map(|v| v.map(|x| x as f32));
-        let f = [sea.lobe.eval(*i, *o, up()), sea.lobe.pdf(*i, *o, up()), single.eval(i32, o32, up()).into()];
+        let f = [
+            sea.local_lobe().eval(*i, *o, up()),
+            sea.local_lobe().pdf(*i, *o, up()),
+            single.eval(i32, o32, up()).into(),
+        ];
         [&f, &s.direction, &[s.pdf, s.f][..]].concat()
     });
 }
@@ -56,8 +60,9 @@ fn lobes() {
 fn configuration() {
     same(|(_, _, u)| {
         let wind = Wind::Speed { speed: 20.0 * u[0], height: 10.0 };
-        let sea = Parameters { wind, footprint: u[1] + 1e-3, ..Parameters::default() }.configure().unwrap();
-        let f = &sea.lobe.facets;
+        let sea =
+            Parameters { wind, footprint: Some(u[1] + 1e-3), ..Parameters::default() }.configure().unwrap();
+        let f = &sea.local_lobe().facets;
         vec![sea.wind.friction_velocity, f.sigma_u, f.sigma_c, f.proposal_u, sea.whitecap_fraction]
     });
 }
@@ -67,7 +72,7 @@ fn facets_by_footprint() {
     let sea = water(8.0, |_| ());
     let table = FacetTable::new(&sea);
     same(|(i, o, u)| {
-        let mut lobe = sea.lobe;
+        let mut lobe = sea.local_lobe();
         table.set(&mut lobe.facets, 10.0 * u[0]);
         vec![lobe.eval(*i, *o, up())]
     });
@@ -87,7 +92,7 @@ fn empirical() {
 #[test]
 fn ensemble_and_instance() {
     let ensemble = EnsembleLobe::new(&drawn(Surface::Ensemble)).unwrap();
-    let instance = InstanceLobe::new(&drawn(Surface::Instance));
+    let instance = InstanceLobe::new(&drawn(Surface::Instance)).unwrap();
     same(|(i, o, u)| vec![ensemble.eval(*i, *o), instance.eval(*i, *o, [1e3 * u[0], 1e3 * u[1]])]);
 }
 

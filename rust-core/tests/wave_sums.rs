@@ -3,7 +3,7 @@
 use prob_water::lanes::Level;
 use prob_water::surface::Point;
 use prob_water::waves::Component;
-use prob_water::{Draws, Ensemble, Parameters, RealisedSurface, WaveSums, Wind};
+use prob_water::{Draws, Ensemble, Parameters, RealisedSurface, Surface, WaveSums, Wind};
 use std::f64::consts::TAU;
 
 fn levels() -> impl Iterator<Item = Level> {
@@ -18,11 +18,13 @@ fn places(count: usize) -> Vec<[f64; 2]> {
 fn components(wind: f64, count: u32) -> Vec<Component> {
     let parameters = Parameters {
         wind: Wind::FrictionVelocity(wind),
-        footprint: 0.01,
+        surface: Surface::Instance,
+        footprint: Some(0.01),
         components: count,
         ..Parameters::default()
     };
-    let sea = Ensemble { draws: Draws::Stratified, ..Ensemble::new(&parameters.configure().unwrap()) };
+    let sea =
+        Ensemble { draws: Draws::Stratified, ..Ensemble::new(&parameters.configure().unwrap()).unwrap() };
     sea.components(0).1.collect()
 }
 

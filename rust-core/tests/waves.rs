@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 fn sea(w: f64, footprint: f64, components: u32) -> Water {
     water(w, |p| {
         p.surface = Surface::Instance;
-        p.footprint = footprint;
+        p.footprint = Some(footprint);
         p.components = components;
         p.wind_direction = 40.0;
     })

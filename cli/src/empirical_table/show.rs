@@ -152,7 +152,7 @@ fn widths(matches: &ArgMatches, table: &Table, water: &Water) -> Outcome {
     table.check(water)?;
     let grid = &table.grid;
     let w = nearest(&grid.friction_velocity, water.wind.friction_velocity);
-    let d = nearest(&grid.footprint, water.parameters.footprint);
+    let d = nearest(&grid.footprint, water.footprint);
     let mut out = rows::Table::new(matches, WIDTHS)?;
     for (i, incidence) in grid.incidence.iter().enumerate() {
         for (a, azimuth) in grid.wind_azimuth.iter().enumerate() {

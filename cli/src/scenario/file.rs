@@ -1,12 +1,12 @@
 //! A scenario file: the sea, what is asked about it, and the engagements.
 
 use super::engagement;
-use super::settings::{self, Settings};
+use super::settings::{self, Settings, Source};
 use crate::empirical_table;
 use crate::model::{Flag, Model};
 use crate::toml_file::Document;
 use prob_water::exact::Exact;
-use prob_water::{Draws, EmpiricalLobe, Engagement, Ensemble, Error, Surface, Water};
+use prob_water::{Across, Draws, EmpiricalLobe, Engagement, Ensemble, Error, Parameters, Surface, Water};
 use std::path::Path;
 
 /// What a file describes; checked.
@@ -27,8 +27,10 @@ pub enum Method {
     Draws(Box<Ensemble>),
     /// Integrals over all surfaces.
     Exact(Box<Exact>),
-    /// A table of the empirical model.
-    Table(Box<EmpiricalLobe>),
+    /// Integrals where their error is small, if the sea has them, else drawn surfaces.
+    Auto(Option<Box<Exact>>, Box<Ensemble>),
+    /// A table of the empirical model, and where it takes the report's form across the plane, the same with the slopes'.
+    Table(Box<EmpiricalLobe>, Option<Box<EmpiricalLobe>>),
 }
 
 impl Scenario {
@@ -83,22 +85,34 @@ impl Scenario {
             engagements.extend(of_entry);
         }
         let method = if water.parameters.surface == Surface::Empirical {
-            Method::Table(Box::new(by_table(path, &model, &water, flags, table)?))
+            let lobe = by_table(path, &model, &water, flags, table)?;
+            let slopes = Parameters { across: Across::Slopes, ..water.parameters };
+            let slopes = (water.parameters.across == Across::Report)
+                .then(|| slopes.configure().map(|water| by_table(path, &model, &water, flags, table)))
+                .transpose()
+                .map_err(|e| model.refuse(flags, &e, None))?
+                .transpose()?;
+            Method::Table(Box::new(lobe), slopes.map(Box::new))
         } else if table.is_some() {
             return Err(empirical_table::MEANINGLESS.into());
-        } else if settings.exact {
+        } else if settings.source == Source::Exact {
             let exact = Exact::new(&water).map_err(|e| model.refuse(flags, &e, None))?;
             Method::Exact(Box::new(exact))
         } else {
-            let Settings { draws, presence, .. } = settings;
-            let mut ensemble = Ensemble { draws, presence, ..Ensemble::new(&water) };
+            let Settings { draws, presence, proposal, .. } = settings;
+            let ensemble = Ensemble::new(&water).map_err(|e| model.refuse(flags, &e, None))?;
+            let mut ensemble = Ensemble { draws, presence, proposal, ..ensemble };
             if draws == Draws::Sobol {
                 ensemble = ensemble.around(&engagements[0]);
             }
             for (engagement, place) in engagements.iter().zip(places) {
                 ensemble.check(engagement).map_err(|e| model.refuse(flags, &e, Some(place)))?;
             }
-            Method::Draws(Box::new(ensemble))
+            // Few components and narrow footprints have draws alone.
+            match settings.source {
+                Source::Auto => Method::Auto(Exact::new(&water).ok().map(Box::new), Box::new(ensemble)),
+                _ => Method::Draws(Box::new(ensemble)),
+            }
         };
         Ok(Self { water, method, limits: settings.limits, engagements })
     }

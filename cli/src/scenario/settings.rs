@@ -1,7 +1,7 @@
 //! The keys that are a scenario's own: what is asked about the sea.
 
 use crate::toml_file::Item;
-use prob_water::{Draws, Presence, Surface};
+use prob_water::{Draws, Presence, Proposal, Surface};
 use std::path::{Path, PathBuf};
 
 /// Their names.
@@ -14,15 +14,29 @@ pub fn is(name: &str) -> bool {
     KEYS.contains(&name)
 }
 
+/// Where statistics come from: `statistics`.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub enum Source {
+    /// Drawn seas.
+    #[default]
+    Draws,
+    /// Integrals over all seas.
+    Exact,
+    /// Integrals where their error is small, else draws.
+    Auto,
+}
+
 /// Their values.
 #[derive(Default)]
 pub struct Settings {
     /// 1/sr.
     pub limits: Vec<f64>,
-    /// No draws: `statistics = "exact"`.
-    pub exact: bool,
+    /// Where they come from.
+    pub source: Source,
     /// How random numbers are spread over the instances.
     pub draws: Draws,
+    /// Which seas are drawn.
+    pub proposal: Proposal,
     /// How whitecaps take part.
     pub presence: Presence,
 }
@@ -30,16 +44,27 @@ pub struct Settings {
 impl Settings {
     /// Each at most once, wherever they stand.
     pub fn read(items: &[Item]) -> Result<Self, String> {
-        let mut settings = Self::default();
+        let mut settings = Self { proposal: Proposal::Auto, ..Self::default() };
         for (i, item) in items.iter().enumerate() {
             if items[..i].iter().any(|before| before.name == item.name) {
                 return Err(item.refuse(format!("{} is given twice", item.name)));
             }
             match item.name {
                 "limits" => settings.limits = limits(item)?,
-                "statistics" => settings.exact = item.choice(&[("draws", false), ("exact", true)])?,
+                "statistics" => {
+                    settings.source = item.choice(&[
+                        ("draws", Source::Draws),
+                        ("exact", Source::Exact),
+                        ("auto", Source::Auto),
+                    ])?;
+                }
                 "draws" => {
-                    settings.draws = item.choice(&[("random", Draws::Random), ("sobol", Draws::Sobol)])?;
+                    (settings.draws, settings.proposal) = item.choice(&[
+                        ("auto", (Draws::Random, Proposal::Auto)),
+                        ("random", (Draws::Random, Proposal::Plain)),
+                        ("sobol", (Draws::Sobol, Proposal::Plain)),
+                        ("slopes", (Draws::Random, Proposal::Slopes)),
+                    ])?;
                 }
                 TABLE => (), // Model's
                 _ => {
@@ -49,13 +74,13 @@ impl Settings {
             }
         }
         let meaningless = |item: &&Item| match item.name {
-            "draws" => settings.draws != Draws::Random,
+            "draws" => settings.proposal != Proposal::Auto,
             "whitecap_presence" => settings.presence != Presence::Drawn,
             _ => false,
         };
-        match items.iter().find(meaningless).filter(|_| settings.exact) {
+        match items.iter().find(meaningless).filter(|_| settings.source == Source::Exact) {
             Some(item) => {
-                let with = if item.name == "draws" { "sobol" } else { "expected" };
+                let with = item.text()?;
                 Err(item.refuse(format!("{} = {with} has no meaning with statistics = exact", item.name)))
             }
             None => Ok(settings),

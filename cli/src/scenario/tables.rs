@@ -4,7 +4,8 @@ use super::file::{Method, Scenario};
 use crate::table::{self, Cell, Table};
 use crate::{Outcome, Stop, files};
 use clap::ArgMatches;
-use prob_water::ensemble::Samples;
+use prob_water::ensemble::{Samples, Sighting};
+use prob_water::statistics::FEWEST_EFFECTIVE;
 use prob_water::{Engagement, Statistics};
 
 const STATISTICS: [&str; 14] = [
@@ -23,8 +24,14 @@ const STATISTICS: [&str; 14] = [
     "obscured",
     "whitecap",
 ];
-const INSTANCES: [&str; 13] =
-    ["time", "observer", "instance", "f", "cos_r", "obscured", "whitecap", "x", "y", "z", "nx", "ny", "nz"];
+const TRUST: [&str; 5] = ["effective", "mean_upper", "method", "mean_error", "share_error"];
+const INSTANCES: [&str; 14] = [
+    "time", "observer", "instance", "f", "cos_r", "obscured", "whitecap", "x", "y", "z", "nx", "ny", "nz",
+    "weight",
+];
+/// Errors of a method that a warning tells of: relative ones of means, and those in probability.
+const LARGE_ERROR: f64 = 0.05;
+const LARGE_SHARE_ERROR: f64 = 0.2;
 const ORIGIN: [&str; 3] = ["version", "readings", "seed"];
 
 /// The tables in the making, and what ends every row.
@@ -34,6 +41,61 @@ pub struct Tables {
     instances: Option<Table>,
     readings: String,
     seed: u64,
+    few: Notice,
+    wrong: Notice,
+    outside: Notice,
+}
+
+/// Where a row comes from.
+#[derive(Clone, Copy, PartialEq)]
+pub enum By {
+    /// Seas drawn as the wind draws them.
+    Draws,
+    /// Seas drawn by importance.
+    Slopes,
+    /// Integrals over all seas.
+    Integrals,
+    /// A table of the empirical model.
+    Table {
+        /// The directions are beyond its angles.
+        outside: bool,
+    },
+}
+
+impl By {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Draws => "draws",
+            Self::Slopes => "slopes",
+            Self::Integrals => "exact",
+            Self::Table { .. } => "table",
+        }
+    }
+}
+
+/// Rows that something is to be said about, and the first of them.
+#[derive(Default)]
+struct Notice {
+    rows: u64,
+    first: String,
+}
+
+impl Notice {
+    fn add(&mut self, holds: bool, engagement: &Engagement, observer: usize) {
+        if holds {
+            if self.rows == 0 {
+                self.first = format!("time {}, observer {observer}", engagement.time());
+            }
+            self.rows += 1;
+        }
+    }
+
+    fn say(&self, about: &str, advice: &str) {
+        if self.rows > 0 {
+            let rows = if self.rows == 1 { "1 row".into() } else { format!("{} rows", self.rows) };
+            eprintln!("prob-water: warning: {rows} {about}, the first at {}: {advice}", self.first);
+        }
+    }
 }
 
 impl Tables {
@@ -42,11 +104,12 @@ impl Tables {
         let instances_out = matches.contains_id("instances_out");
         let without_instances = match scenario.method {
             Method::Draws(_) => None,
+            Method::Auto(..) => Some("statistics = auto"),
             Method::Exact(_) => Some("statistics = exact"),
-            Method::Table(_) => Some("surface = empirical"),
+            Method::Table(..) => Some("surface = empirical"),
         };
         if let Some(with) = without_instances.filter(|_| instances_out) {
-            let message = format!("--instances-out has no meaning with {with}: there are no instances");
+            let message = format!("--instances-out has no meaning with {with}: not every row has instances");
             return Err(Stop::Refused(message));
         }
         let [path, other] = ["output", "instances_out"].map(|flag| table::path(matches, flag));
@@ -59,16 +122,26 @@ impl Tables {
         };
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let limits = scenario.limits.iter().map(|limit| format!("p_over_{limit}"));
-        let outside = matches!(scenario.method, Method::Table(_)).then(|| "outside".to_owned());
+        let outside = matches!(scenario.method, Method::Table(..)).then(|| "outside".to_owned());
+        let upper = scenario.limits.iter().map(|limit| format!("p_over_{limit}_upper"));
         let parameters = &scenario.water.parameters;
         Ok(Self {
             statistics: Some(open(
                 path,
-                names(&STATISTICS).into_iter().chain(limits).chain(outside).collect(),
+                names(&STATISTICS)
+                    .into_iter()
+                    .chain(limits)
+                    .chain(outside)
+                    .chain(upper)
+                    .chain(names(&TRUST))
+                    .collect(),
             )?),
             instances: instances_out.then(|| open(other, names(&INSTANCES))).transpose()?,
             readings: parameters.get("readings").map(|value| value.to_string()).unwrap_or_default(),
             seed: parameters.seed,
+            few: Notice::default(),
+            wrong: Notice::default(),
+            outside: Notice::default(),
         })
     }
 
@@ -76,28 +149,51 @@ impl Tables {
     pub fn group(&mut self, engagements: &[Engagement], samples: &Samples, limits: &[f64]) -> Outcome {
         for (i, engagement) in engagements.iter().enumerate() {
             for observer in 0..engagement.observers().len() {
-                self.statistics(engagement, observer, &samples.statistics(i, observer, limits), None)?;
-                self.instances(engagement, observer, samples, i)?;
+                self.sample(engagement, observer, samples, [i, observer], limits)?;
             }
         }
         Ok(())
     }
 
-    /// What an observer sees of all instances; by a table, whether that is outside of its grid.
+    /// The rows of an observer who has these numbers among the samples: of an engagement and of its observers.
+    pub fn sample(
+        &mut self,
+        engagement: &Engagement,
+        observer: usize,
+        samples: &Samples,
+        [i, o]: [usize; 2],
+        limits: &[f64],
+    ) -> Outcome {
+        let by = if samples.by_slopes(i, o)? { By::Slopes } else { By::Draws };
+        self.statistics(engagement, observer, &samples.statistics(i, o, limits)?, by)?;
+        self.instances(engagement, observer, samples.of(i, o)?)
+    }
+
+    /// What an observer sees of all instances.
     pub fn statistics(
         &mut self,
         engagement: &Engagement,
         observer: usize,
         s: &Statistics,
-        outside: Option<bool>,
+        by: By,
     ) -> Outcome {
+        self.few.add(s.effective < FEWEST_EFFECTIVE, engagement, observer);
+        let wrong = s.mean_error > LARGE_ERROR || s.share_error > LARGE_SHARE_ERROR;
+        self.wrong.add(wrong, engagement, observer);
+        self.outside.add(by == By::Table { outside: true }, engagement, observer);
         let Some(table) = &mut self.statistics else { return Ok(()) };
         let mut row = vec![Cell::Number(engagement.time()), Cell::Count(observer as u64)];
         row.extend([s.mean, s.std, s.sem, s.min].map(Cell::Number));
         row.extend(s.quantiles.map(Cell::Number));
         row.extend([s.max, s.mean_f_cos, s.obscured, s.whitecap].map(Cell::Number));
         row.extend(s.over.iter().copied().map(Cell::Number));
-        row.extend(outside.map(|outside| Cell::Count(outside.into())));
+        if let By::Table { outside } = by {
+            row.push(Cell::Count(outside.into()));
+        }
+        row.extend(s.over_upper.iter().copied().map(Cell::Number));
+        row.extend([s.effective, s.mean_upper].map(Cell::Number));
+        row.push(Cell::Text(by.name()));
+        row.extend([s.mean_error, s.share_error].map(Cell::Number));
         row.extend(origin(&self.readings, self.seed));
         match table.row(&row) {
             Err(Stop::ReaderLeft) if self.instances.is_some() => self.statistics = None,
@@ -107,15 +203,14 @@ impl Tables {
     }
 
     /// What an observer sees of each.
-    fn instances(
+    fn instances<'a>(
         &mut self,
         engagement: &Engagement,
         observer: usize,
-        samples: &Samples,
-        i: usize,
+        all: impl Iterator<Item = Sighting<'a>>,
     ) -> Outcome {
         let Some(table) = &mut self.instances else { return Ok(()) };
-        for (instance, hit, seen) in samples.of(i, observer) {
+        for Sighting { instance, weight, hit, seen } in all {
             let ([x, y, z], [nx, ny, nz]) = (hit.position, hit.normal);
             let mut row = vec![
                 Cell::Number(engagement.time()),
@@ -126,7 +221,7 @@ impl Tables {
                 Cell::Count(seen.obscured.into()),
                 Cell::Number(hit.whitecap),
             ];
-            row.extend([x, y, z, nx, ny, nz].map(Cell::Number));
+            row.extend([x, y, z, nx, ny, nz, weight].map(Cell::Number));
             row.extend(origin(&self.readings, self.seed));
             table.row(&row)?;
         }
@@ -134,8 +229,20 @@ impl Tables {
     }
 
     /// Both files appear.
+    /// And all that is to be said about their rows.
     pub fn end(self) -> Outcome {
-        table::end(self.statistics.into_iter().chain(self.instances))
+        table::end(self.statistics.into_iter().chain(self.instances))?;
+        self.few.say(
+            "rest on fewer than 10 effective draws (column effective)",
+            "their mean and sem are not settled, and mean_upper is all that is known; take more instances",
+        );
+        self.wrong.say(
+            "may be off by their method, means by more than 5 % or quantiles by more than 0.2 in probability \
+             (columns mean_error, share_error)",
+            "statistics = auto of surface = instance takes draws there",
+        );
+        self.outside.say("are outside of the table's grid (column outside)", "they are its nearest values");
+        Ok(())
     }
 }
 

@@ -81,7 +81,7 @@ fn the_sea_from_afar() {
     let water = prob_water::Parameters {
         wind: prob_water::Wind::FrictionVelocity(24.0),
         surface: prob_water::Surface::Ensemble,
-        footprint: 0.15,
+        footprint: Some(0.15),
         ..Default::default()
     };
     let lobe = prob_water::EnsembleLobe::new(&water.configure().unwrap()).unwrap();

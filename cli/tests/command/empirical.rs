@@ -12,7 +12,7 @@ const ROWS: &str =
 fn sea() -> Parameters {
     Parameters {
         wind: Wind::FrictionVelocity(8.0),
-        footprint: 0.15,
+        footprint: Some(0.15),
         surface: Surface::Empirical,
         ..Parameters::default()
     }

@@ -46,7 +46,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
     Parameters {
         wind,
         wind_direction: -100.0 / 3.0,
-        footprint: 0.21,
+        footprint: Some(0.21),
         surface,
         average: Average::Report,
         across: Across::Slopes,

@@ -28,7 +28,7 @@ fn arguments() {
         ("wind --table --ior 1.3", &["--table", "--ior"]),
         ("wind --output no/such/folder/out.csv", &["no/such/folder/out.csv"]),
         ("brdf --surface instance", &["column x is missing", "x,y"]),
-        ("spectrum --surface flat", &["surface = flat is unknown: allowed is instance"]),
+        ("spectrum --surface flat", &["surface = flat is not served here: allowed is instance"]),
         ("spectrum --wind-speed 0", &["no waves", "k_min", "--wave-number"]),
         ("spectrum --friction-velocity 0.47", &["no waves", "--wave-number"]),
         ("spectrum --points 1", &["--points", "1"]),

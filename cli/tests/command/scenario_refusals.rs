@@ -147,7 +147,12 @@ fn models() {
             ("components = 5", "fetch = nan", "7", "fetch = NaN"),
             ("components = 5", "time = inf", "7", "time = inf is out of range"),
             ("components = 5", "waves = 5", "7", "unknown key waves"),
-            ("components = 5", "surface = 'flat'", "7", "surface = flat is unknown: allowed is instance"),
+            (
+                "components = 5",
+                "surface = 'flat'",
+                "7",
+                "surface = flat is not served here: allowed is instance",
+            ),
             ("components = 5", "surface = 'wavy'", "7", "surface = wavy is unknown"),
             ("components = 5", "whitecaps = 1", "7", "whitecaps = 1 is not true or false"),
             ("components = 5", "beaufort = 3", "7", "wind_speed = 5 and beaufort = 3 are both given"),
@@ -164,7 +169,7 @@ fn models() {
     refused(GOOD.as_bytes(), "--instances 1000000000", "", "instances = 1000000000 is out of range");
     // What a flag says is not the file's fault.
     refused(GOOD.as_bytes(), "--depth -1", "", "depth = -1 is out of range");
-    refused(GOOD.as_bytes(), "--surface flat", "", "surface = flat is unknown");
+    refused(GOOD.as_bytes(), "--surface flat", "", "surface = flat is not served here");
     refused(GOOD.as_bytes(), "--beaufort 3 --wind-speed 4", "", "are both given");
 }
 

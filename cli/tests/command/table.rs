@@ -171,7 +171,7 @@ fn slices_are_the_librarys() {
     let water = Parameters {
         wind: Wind::FrictionVelocity(7.0),
         wind_direction: 40.0,
-        footprint: 0.15,
+        footprint: Some(0.15),
         surface: Surface::Empirical,
         wavelength: 1.064,
         ..Parameters::default()
@@ -245,7 +245,7 @@ fn refusals() {
         ("table show --incidence 9 --angles 0,90", "90 is out of range"),
         ("table show --across-plane", "--incidence"),
         ("table show --widths --incidence 3", "--widths"),
-        ("table show --widths --surface flat", "surface = flat is unknown: allowed is empirical"),
+        ("table show --widths --surface flat", "surface = flat is not served here: allowed is empirical"),
         ("table show --incidence 9 --wind-speed 30", "wind_speed = 30 (friction velocity"),
         ("table show --incidence 9 --footprint 2", "footprint = 2 is out of range: allowed is 0.02 to 1 m"),
         (

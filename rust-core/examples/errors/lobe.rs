@@ -46,7 +46,7 @@ fn any(lines: &mut Lines) -> Parameters {
     Parameters {
         wind: Wind::FrictionVelocity(lines.wind()),
         wind_direction: lines.uniform(0.0, 360.0),
-        footprint: lines.footprint(),
+        footprint: Some(lines.footprint()),
         ior: Some(lines.uniform(1.2, 1.6)),
         fresnel: lines.one(&[Fresnel::Schlick, Fresnel::Exact]),
         slope_measure: lines.one(&[SlopeMeasure::Angle, SlopeMeasure::Slope]),
@@ -61,11 +61,11 @@ fn sea(lines: &mut Lines, p: Parameters) -> Sea {
     let id = lines.seas;
     lines.seas += 1;
     lines.write(&json!({
-        "sea": id, "friction_velocity": water.wind.friction_velocity, "footprint": p.footprint,
+        "sea": id, "friction_velocity": water.wind.friction_velocity, "footprint": water.footprint,
         "wind_direction": p.wind_direction, "ior": water.ior, "exact": p.fresnel == Fresnel::Exact,
         "slope": p.slope_measure == SlopeMeasure::Slope, "gram_charlier": p.gram_charlier, "shadowing": p.shadowing,
         "whitecaps": p.whitecaps, "wavelength": p.wavelength,
-        "stretch": water.lobe.facets.proposal_u / water.lobe.facets.sigma_u,
+        "stretch": water.local_lobe().facets.proposal_u / water.local_lobe().facets.sigma_u,
     }));
     Sea { id, water }
 }
@@ -77,7 +77,7 @@ fn f_rows(lines: &mut Lines, stage: &str, of: &[Parameters], normal: impl Fn(&mu
     for _ in 0..PAIRS {
         let n = normal(lines);
         let [i, o] = pair(lines, &seas[0].water, n);
-        let f: Vec<_> = seas.iter().map(|sea| sea.water.lobe.eval(i, o, n)).collect();
+        let f: Vec<_> = seas.iter().map(|sea| sea.water.local_lobe().eval(i, o, n)).collect();
         lines.row(stage, json!([ids, i, o, n]), json!({"float64": f}));
         let [i, o, n] = [i, o, n].map(single);
         let mut y = json!({});
@@ -92,14 +92,14 @@ fn f_rows(lines: &mut Lines, stage: &str, of: &[Parameters], normal: impl Fn(&mu
 /// as a flat sea leaves them.
 fn singles(seas: &[Sea], i: Vec3<f32>, o: Vec3<f32>, n: Vec3<f32>) -> Vec<(&'static str, Value)> {
     let scalar: Vec<_> =
-        seas.iter().map(|sea| f64::from(sea.water.lobe.cast::<f32>().eval(i, o, n))).collect();
+        seas.iter().map(|sea| f64::from(sea.water.local_lobe().cast::<f32>().eval(i, o, n))).collect();
     let normals = (n != up::<f32>()).then_some(&n);
     let columns = [&i, &o].map(|v| v.each_ref().map(std::slice::from_ref));
     let normals = normals.map(|n| n.each_ref().map(std::slice::from_ref));
     let columns = Columns::new(columns[0], columns[1], normals).expect("unit vectors");
     let lanes = |sea: &Sea| {
         let mut f = [0.0];
-        columns.eval(&sea.water.lobe.cast(), &mut f).expect("one row");
+        columns.eval(&sea.water.local_lobe().cast(), &mut f).expect("one row");
         f64::from(f[0])
     };
     let lanes: Vec<_> = seas.iter().map(lanes).collect();
@@ -109,7 +109,7 @@ fn singles(seas: &[Sea], i: Vec3<f32>, o: Vec3<f32>, n: Vec3<f32>) -> Vec<(&'sta
 /// The density of draws, and draws.
 fn draws(lines: &mut Lines, p: Parameters) {
     let sea = sea(lines, p);
-    let lobe: Lobe<f64> = sea.water.lobe;
+    let lobe: Lobe<f64> = sea.water.local_lobe();
     let lobe32: Lobe<f32> = lobe.cast();
     for _ in 0..PAIRS {
         let n = up();
@@ -131,18 +131,18 @@ fn draws(lines: &mut Lines, p: Parameters) {
 fn steep(lines: &mut Lines) {
     let p = Parameters {
         wind: Wind::FrictionVelocity(lines.uniform(60.0, 238.65)),
-        footprint: lines.one(&[0.15, 1.0, f64::INFINITY]),
+        footprint: Some(lines.one(&[0.15, 1.0, f64::INFINITY])),
         gram_charlier: false,
         shadowing: false,
         slope_measure: SlopeMeasure::Angle,
         ..any(lines)
     };
     let sea = sea(lines, p);
-    let lobe32: Lobe<f32> = sea.water.lobe.cast();
+    let lobe32: Lobe<f32> = sea.water.local_lobe().cast();
     for _ in 0..PAIRS {
         let ((s, c), (sp, cp)) = (lines.zenith().sin_cos(), lines.uniform(0.0, TAU).sin_cos());
         let i = [s * cp, s * sp, c];
-        let f = sea.water.lobe.eval(i, i, up());
+        let f = sea.water.local_lobe().eval(i, i, up());
         lines.row("steep", json!([[sea.id], i, i, up::<f64>()]), json!({"float64": [f]}));
         let i = single(i);
         let f = f64::from(lobe32.eval(i, i, up()));
@@ -152,7 +152,7 @@ fn steep(lines: &mut Lines) {
 
 /// Directions about a normal whose half vector is tilted by up to sqrt([`REACH`]) standard deviations.
 fn pair(lines: &mut Lines, water: &Water, n: Vec3<f64>) -> [Vec3<f64>; 2] {
-    let f = &water.lobe.facets;
+    let f = &water.local_lobe().facets;
     loop {
         let i = lines.direction();
         // A quarter close to the specular direction, where both may be at the horizon.

@@ -18,7 +18,7 @@ fn sea(surface: Surface, w: f64, footprint: f64) -> Parameters {
         wind: Wind::FrictionVelocity(w),
         wind_direction: 25.0,
         surface,
-        footprint,
+        footprint: Some(footprint),
         whitecaps: false,
         ..Parameters::default()
     }

@@ -73,7 +73,7 @@ fn drawn(w: f64, footprint: f64) -> Parameters {
     Parameters {
         wind: Wind::FrictionVelocity(w),
         surface: Surface::Instance,
-        footprint,
+        footprint: Some(footprint),
         whitecaps: false,
         ..Parameters::default()
     }

@@ -32,7 +32,7 @@ fn direction(rng: &mut StdRng, least: f64) -> Vec3<f32> {
 
 /// The flat sea, 5 m/s: errors are those of rounding, against float64.
 fn flat(repeats: usize, pairs: &[[Vec3<f32>; 2]], directory: &Path) {
-    let lobe = Parameters::default().configure().expect("the parameters are valid").lobe;
+    let lobe = Parameters::default().configure().expect("the parameters are valid").local_lobe();
     let wide: Vec<_> = pairs.iter().map(|pair| pair.map(|v| v.map(f64::from))).collect();
     let reference: Vec<f64> = wide.iter().map(|[i, o]| lobe.eval(*i, *o, None)).collect();
     write(&directory.join("pairs.f32"), pairs.iter().flatten().flatten().map(|x| x.to_le_bytes()));
@@ -80,7 +80,7 @@ fn wavy(repeats: usize, many: &[[Vec3<f32>; 2]], rng: &mut StdRng) {
     let parameters = Parameters {
         wind: Wind::FrictionVelocity(8.0),
         surface: Surface::Empirical,
-        footprint: 0.15,
+        footprint: Some(0.15),
         instances: 50,
         ..Parameters::default()
     };
@@ -97,7 +97,7 @@ fn wavy(repeats: usize, many: &[[Vec3<f32>; 2]], rng: &mut StdRng) {
         .collect();
     let means = |to: &mut Vec<f64>| *to = looks.iter().map(|look| exact.means(look)[0].f).collect();
     let mut reference = vec![];
-    let ensemble = Ensemble::new(&water);
+    let ensemble = Ensemble::new(&water).expect("the sea has drawn waves");
     let mut drawn = vec![];
     let mut out = vec![0.0f32; MEANS];
     let mut out_of_many = vec![0.0f32; many.len()];
@@ -111,7 +111,7 @@ fn wavy(repeats: usize, many: &[[Vec3<f32>; 2]], rng: &mut StdRng) {
                 .iter()
                 .map(|look| {
                     let samples = ensemble.sample(std::slice::from_ref(look), &|_| ()).expect("it fits");
-                    samples.statistics(0, 0, &[]).mean as f32
+                    samples.statistics(0, 0, &[]).expect("they are there").mean as f32
                 })
                 .collect();
         }));

@@ -13,7 +13,7 @@ fn sea(seed: u64, instances: u64) -> Water {
     Parameters {
         wind: Wind::FrictionVelocity(8.0),
         surface: Surface::Instance,
-        footprint: 0.15,
+        footprint: Some(0.15),
         seed,
         instances,
         ..Parameters::default()
@@ -46,10 +46,12 @@ pub fn front(repeats: usize) {
         .collect();
     let mean_of = |ensemble: Ensemble| -> Vec<f64> {
         let samples = ensemble.sample(std::slice::from_ref(&engagement), &|_| ()).expect("enough memory");
-        (0..views.len()).map(|o| samples.statistics(0, o, &[]).mean).collect()
+        (0..views.len()).map(|o| samples.statistics(0, o, &[]).expect("they are there").mean).collect()
     };
-    let expected =
-        |seed, draws| Ensemble { presence: Presence::Expected, ..Ensemble::new(&sea(seed, draws)) };
+    let expected = |seed, draws| Ensemble {
+        presence: Presence::Expected,
+        ..Ensemble::new(&sea(seed, draws)).expect("the sea has drawn waves")
+    };
     let off = |means: &[f64]| means.iter().zip(&exact).map(|(a, b)| a / b - 1.0).collect::<Vec<_>>();
 
     for (family, around) in [("plain draws", false), ("Sobol draws", true)] {

@@ -18,12 +18,16 @@ pub fn front(repeats: usize, directory: &Path) {
     let water = Parameters {
         wind: Wind::FrictionVelocity(8.0),
         surface: Surface::Instance,
-        footprint: 0.15,
+        footprint: Some(0.15),
         components: 512,
         ..Parameters::default()
     };
     let water = water.configure().expect("the parameters are valid");
-    let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(&water) };
+    let sea = Ensemble {
+        draws: Draws::Stratified,
+        waves: water.fading_waves(),
+        ..Ensemble::new(&water).expect("the sea has drawn waves")
+    };
     let waves = sea.components(0).1.map(|wave| wave.seen_at(0.15)).filter(|wave| wave.amplitude > 0.0);
     let sea = RealisedSurface::new(waves, 0.0);
 

@@ -58,12 +58,13 @@ pub fn block(draw: &mut Draw, tally: &mut Tally) {
     let sea = draw.flat_sea();
     let water = sea.configure().expect("within the ranges of the vocabulary");
     let block = Block::new(draw, &water);
-    let single = water.lobe.cast::<f32>();
+    let lobe = water.local_lobe();
+    let single = lobe.cast::<f32>();
 
-    let f: Vec<f64> = block.wide.iter().map(|[i, o, n]| water.lobe.eval(*i, *o, *n)).collect();
+    let f: Vec<f64> = block.wide.iter().map(|[i, o, n]| lobe.eval(*i, *o, *n)).collect();
     tally.count("f, float64", ROWS as u64);
     values(tally, &sea, "f of float64", &block, &f);
-    let gaussian = Parameters { gram_charlier: false, ..sea }.configure().expect("as the sea").lobe;
+    let gaussian = Parameters { gram_charlier: false, ..sea }.configure().expect("as the sea").local_lobe();
     let size = |row: &Row| gaussian.eval(row[0], row[1], row[2]);
     for (names, way) in SINGLE {
         let mut found = vec![f32::NAN; ROWS];
@@ -82,7 +83,7 @@ pub fn block(draw: &mut Draw, tally: &mut Tally) {
         let checked = Rows::new(&i, &o, Some(&n)).map(|_| ());
         tally.check(checked.is_ok(), &sea, "rows refused", || format!("{checked:?}"));
     }
-    densities(draw, tally, &sea, &block, &water.lobe, &single);
+    densities(draw, tally, &sea, &block, &lobe, &single);
 }
 
 /// Every value finite and not negative, and 0 where a direction lies below the horizon.
@@ -148,7 +149,7 @@ fn compare(
 
 /// U^2 + C^2 of the facet that mirrors the source to the observer.
 fn deviations(water: &Water, [i, o, n]: &Row) -> f64 {
-    let f = &water.lobe.facets;
+    let f = &water.local_lobe().facets;
     let h = [0, 1, 2].map(|k| i[k] + o[k]);
     let tilt = |axis: [f64; 2]| {
         let along = |v: &[f64; 3]| v[0] * axis[0] + v[1] * axis[1];
@@ -233,7 +234,7 @@ fn in_short(sea: &Parameters) -> String {
     let wind = sea.wind.profile().map_or(f64::NAN, |wind| wind.friction_velocity);
     format!(
         "w* {wind} cm/s, D {:e} m, wavelength {}, ior {:?}, {:?}, {:?}, {:?}, whitecaps {}, shadowing {}, gram_charlier {}",
-        sea.footprint,
+        sea.footprint(),
         sea.wavelength,
         sea.ior,
         sea.fresnel,

@@ -86,12 +86,12 @@ impl Draw {
                 0 => self.one_of(&[0.0, -0.0, 90.0, 180.0, -270.0, 1e15, 5e-324, -1e300]),
                 _ => self.between(-360.0, 360.0),
             },
-            footprint: match self.pick(8) {
+            footprint: Some(match self.pick(8) {
                 0 | 1 => f64::INFINITY,
                 2 => 1e-3,
                 3 => self.one_of(&[5e-324, 1e-12, 1e12, f64::MAX]),
                 _ => self.log_between(1e-3, 1e4),
-            },
+            }),
             wavelength: match self.pick(4) {
                 0 => self.one_of(&[0.2, 200.0]),
                 _ => self.log_between(0.2, 200.0),

@@ -38,9 +38,9 @@ pub fn facets_by_footprint(draw: &mut Draw, tally: &mut Tally) {
             0 => draw.one_of(&[0.0, 5e-324, 1e-12, f64::MAX, f64::INFINITY, f64::NAN]),
             _ => draw.log_between(1e-4, 1e7),
         };
-        let mut lobe = water.lobe;
+        let mut lobe = water.local_lobe();
         table.set(&mut lobe.facets, footprint);
-        let mut single = water.lobe.cast::<f32>();
+        let mut single = water.local_lobe().cast::<f32>();
         table.set(&mut single.facets, footprint);
         let [i, o] = pair(draw);
         let [i32, o32] = [i, o].map(|v| v.map(|x| x as f32));
@@ -63,7 +63,7 @@ pub fn empirical(draw: &mut Draw, tally: &mut Tally) {
     let sea = Parameters {
         surface: Surface::Empirical,
         wind: Wind::FrictionVelocity(draw.log_between(w[0], w[1])),
-        footprint: draw.log_between(d[0], d[1]),
+        footprint: Some(draw.log_between(d[0], d[1])),
         across: draw.one_of(&[Across::Report, Across::Slopes]),
         ..Parameters::default()
     };
@@ -114,7 +114,7 @@ pub fn drawn_sea(draw: &mut Draw, surface: Surface) -> Parameters {
     let components = draw.one_of(&[4, 5, 5, 20, 21, 64]);
     let sea = Parameters {
         surface,
-        footprint: draw.log_between(0.02, 3.0),
+        footprint: Some(draw.log_between(0.02, 3.0)),
         average: draw.one_of(&[Average::Power, Average::Report]),
         components,
         instances: 4,

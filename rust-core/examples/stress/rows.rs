@@ -2,6 +2,7 @@
 
 use crate::draw::{Draw, Vec3};
 use prob_water::Water;
+use prob_water::brdf::Facets;
 use prob_water::real::dot;
 
 /// Rows of a block.
@@ -80,11 +81,8 @@ fn normal(draw: &mut Draw, water: &Water, i: Vec3) -> Vec3 {
         }
         13 if draw.pick(4) == 0 => {
             // Upright water, facing the wind or anywhere.
-            let [x, y, _] = if draw.flag() {
-                draw.at(90.0)
-            } else {
-                [water.lobe.facets.cos_wind, water.lobe.facets.sin_wind, 0.0]
-            };
+            let Facets { cos_wind, sin_wind, .. } = water.local_lobe().facets;
+            let [x, y, _] = if draw.flag() { draw.at(90.0) } else { [cos_wind, sin_wind, 0.0] };
             [x, y, draw.one_of(&[1e-45, 1e-38, 1e-20, 1e-9])]
         }
         13 => {
@@ -107,7 +105,7 @@ fn normal(draw: &mut Draw, water: &Water, i: Vec3) -> Vec3 {
 
 /// Where the source is mirrored by a facet some standard deviations from the wave normal.
 fn specular(draw: &mut Draw, water: &Water, i: Vec3, n: Vec3) -> Vec3 {
-    let f = &water.lobe.facets;
+    let f = &water.local_lobe().facets;
     let reach = match draw.pick(8) {
         0 => draw.log_between(1e-6, 1e-1),
         1 => draw.log_between(1.0, 1e3),

@@ -15,7 +15,7 @@ use prob_water::{
 pub fn instance(draw: &mut Draw, tally: &mut Tally) {
     let sea = drawn_sea(draw, Surface::Instance);
     let water = sea.configure().expect("within the ranges of the vocabulary");
-    let lobe = InstanceLobe::new(&water);
+    let lobe = InstanceLobe::new(&water).expect("the sea has drawn waves");
     for _ in 0..1024 {
         let [i, o] = pair(draw);
         let place = place(draw);
@@ -95,13 +95,13 @@ pub fn statistics(draw: &mut Draw, tally: &mut Tally) {
     let Ok(engagement) = Engagement::new(sea.time, laser, aim, &observers) else {
         return tally.count("(engagements refused)", 1);
     };
-    let ensemble = Ensemble::new(&water);
+    let ensemble = Ensemble::new(&water).expect("the sea has drawn waves");
     let ensemble = if draw.flag() { ensemble.around(&engagement) } else { ensemble };
     let ensemble = Ensemble { presence: draw.one_of(&[Presence::Drawn, Presence::Expected]), ..ensemble };
     match ensemble.sample(std::slice::from_ref(&engagement), &|_| ()) {
         Ok(samples) => {
             for observer in 0..observers.len() {
-                let found = samples.statistics(0, observer, &[0.0, 1e-3, 1e3]);
+                let found = samples.statistics(0, observer, &[0.0, 1e-3, 1e3]).expect("they are there");
                 tally.check(whole(&found, true), &sea, "statistics of draws", || {
                     format!("{} {found:?}", told())
                 });
