@@ -88,10 +88,9 @@ impl Statistics {
         let std = spread(&|d| d.weight * ((d.f - mean) / unit).powi(2));
         let sem =
             if n > 1.0 { spread(&|d| ((d.weight * d.f - mean) / unit).powi(2)) / n.sqrt() } else { f64::NAN };
-        let over: Vec<f64> = limits
-            .iter()
-            .map(|limit| (sum(&|d| if d.f > *limit { d.weight } else { 0.0 }) / n).min(1.0))
-            .collect();
+        let total = sum(&|d| d.weight).max(f64::MIN_POSITIVE);
+        let above = |limit: &f64| sum(&|d| if d.f > *limit { d.weight } else { 0.0 }) / total;
+        let over: Vec<f64> = limits.iter().map(above).collect();
         let settled = effective >= FEWEST_EFFECTIVE && n > 1.0;
         let weighted = draws.iter().any(|d| d.weight != 1.0);
         let largest = if settled && !(weighted && !limits.is_empty()) {

@@ -491,3 +491,52 @@ fn uncertainties_are_finite_far_from_the_mirror() {
         }
     }
 }
+
+/// Draws by the table place quantiles at levels that are off by no more than `share_error`, against drawn surfaces: in nine
+/// rows of ten, and low views are seen as often as they are.
+#[test]
+fn quantiles_by_the_table() {
+    let (mut rows, mut wrong, mut largest) = (0, 0, 0.0f64);
+    for (w, footprint, incidence) in
+        [(8.0, 0.15, 30.0), (24.0, 0.15, 75.0), (40.0, 0.5, 60.0), (16.0, 0.1, 80.0)]
+    {
+        let water = Parameters {
+            wind: Wind::FrictionVelocity(w),
+            surface: Surface::Empirical,
+            footprint: Some(footprint),
+            instances: 4000,
+            across: Across::Slopes,
+            ..Parameters::default()
+        }
+        .configure()
+        .unwrap();
+        let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
+        let views: Vec<_> =
+            [0.0, 20.0, 40.0, 60.0, 75.0, 80.0, 85.0].iter().map(|a: &f64| [a.to_radians().sin(), 0.0, a.to_radians().cos()]).collect();
+        let engagement = Engagement::far(incidence, 10e3, &views, 1e5).unwrap();
+        let samples =
+            Ensemble::new(&water).unwrap().sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
+        for (o, [i, view]) in engagement.ways().enumerate() {
+            let (found, _) = lobe.statistics(i, view, NonZeroU32::new(4000).unwrap(), 1, &[0.0]);
+            let drawn: Vec<f64> = samples.of(0, o).unwrap().map(|s| s.seen.f).collect();
+            let share = |of: &dyn Fn(f64) -> bool| {
+                drawn.iter().filter(|f| of(**f)).count() as f64 / drawn.len() as f64
+            };
+            for (quantile, level) in found.quantiles.iter().zip(prob_water::statistics::QUANTILES) {
+                // A quantile stands for every level between the shares below it and not above it.
+                let (below, up_to) = (share(&|f| f < *quantile), share(&|f| f <= *quantile));
+                let off = (below - level).max(level - up_to).max(0.0);
+                rows += 1;
+                wrong += i32::from(off > found.share_error);
+                largest = largest.max(off / found.share_error);
+            }
+            let (seen, expected) = (found.over[0], share(&|f| f > 0.0));
+            assert!(
+                (seen - expected).abs() < 0.15,
+                "w* {w} view {o}: seen {seen}, by the ray cast {expected}"
+            );
+        }
+    }
+    println!("{wrong} of {rows} quantiles beyond share_error, the worst {largest:.2} times");
+    assert!(10 * wrong <= rows && largest > 0.3, "{wrong} of {rows}, {largest}");
+}

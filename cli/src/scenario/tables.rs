@@ -30,7 +30,7 @@ const INSTANCES: [&str; 14] = [
     "weight",
 ];
 /// Errors of a method that a warning tells of: relative ones of means, and those in probability.
-const LARGE_ERROR: f64 = 0.05;
+const LARGE_ERROR: f64 = 0.1;
 const LARGE_SHARE_ERROR: f64 = 0.2;
 const ORIGIN: [&str; 3] = ["version", "readings", "seed"];
 
@@ -41,6 +41,7 @@ pub struct Tables {
     instances: Option<Table>,
     readings: String,
     seed: u64,
+    rows: u64,
     few: Notice,
     wrong: Notice,
     outside: Notice,
@@ -90,10 +91,10 @@ impl Notice {
         }
     }
 
-    fn say(&self, about: &str, advice: &str) {
+    fn say(&self, all: u64, about: &str, advice: &str) {
         if self.rows > 0 {
-            let rows = if self.rows == 1 { "1 row".into() } else { format!("{} rows", self.rows) };
-            eprintln!("prob-water: warning: {rows} {about}, the first at {}: {advice}", self.first);
+            let Self { rows, first } = self;
+            eprintln!("prob-water: warning: {rows} of {all} rows {about}, the first at {first}: {advice}");
         }
     }
 }
@@ -139,6 +140,7 @@ impl Tables {
             instances: instances_out.then(|| open(other, names(&INSTANCES))).transpose()?,
             readings: parameters.get("readings").map(|value| value.to_string()).unwrap_or_default(),
             seed: parameters.seed,
+            rows: 0,
             few: Notice::default(),
             wrong: Notice::default(),
             outside: Notice::default(),
@@ -177,6 +179,7 @@ impl Tables {
         s: &Statistics,
         by: By,
     ) -> Outcome {
+        self.rows += 1;
         self.few.add(s.effective < FEWEST_EFFECTIVE, engagement, observer);
         let wrong = s.mean_error > LARGE_ERROR || s.share_error > LARGE_SHARE_ERROR;
         self.wrong.add(wrong, engagement, observer);
@@ -233,15 +236,21 @@ impl Tables {
     pub fn end(self) -> Outcome {
         table::end(self.statistics.into_iter().chain(self.instances))?;
         self.few.say(
+            self.rows,
             "rest on fewer than 10 effective draws (column effective)",
             "their mean and sem are not settled, and mean_upper is all that is known; take more instances",
         );
         self.wrong.say(
-            "may be off by their method, means by more than 5 % or quantiles by more than 0.2 in probability \
+            self.rows,
+            "may be off by their method, means by more than 10 % or quantiles by more than 0.2 in probability \
              (columns mean_error, share_error)",
             "statistics = auto of surface = instance takes draws there",
         );
-        self.outside.say("are outside of the table's grid (column outside)", "they are its nearest values");
+        self.outside.say(
+            self.rows,
+            "are outside of the table's grid (column outside)",
+            "they are its nearest values",
+        );
         Ok(())
     }
 }

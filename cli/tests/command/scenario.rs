@@ -24,6 +24,13 @@ impl Scenario {
         succeed(&format!("scenario {} {flags}", self.path("sea.toml").display()), "")
     }
 
+    /// Both streams of a run.
+    fn output(&self, flags: &str) -> std::process::Output {
+        let output = run(&format!("scenario {} {flags}", self.path("sea.toml").display()), "");
+        assert!(output.status.success());
+        output
+    }
+
     /// The statistics and the table of instances.
     #[track_caller]
     fn run_with_instances(&self, flags: &str) -> [String; 2] {
@@ -34,9 +41,10 @@ impl Scenario {
 }
 
 const HEADER: &str = "time,observer,mean,std,sem,min,p05,p50,p95,p99,max,mean_f_cos,obscured,whitecap,\
-                      p_over_0.001,p_over_0.25,p_over_2,version,readings,seed";
+                      p_over_0.001,p_over_0.25,p_over_2,p_over_0.001_upper,p_over_0.25_upper,p_over_2_upper,\
+                      effective,mean_upper,method,mean_error,share_error,version,readings,seed";
 const INSTANCES: &str =
-    "time,observer,instance,f,cos_r,obscured,whitecap,x,y,z,nx,ny,nz,version,readings,seed";
+    "time,observer,instance,f,cos_r,obscured,whitecap,x,y,z,nx,ny,nz,weight,version,readings,seed";
 
 /// Two engagements, three observers in all.
 const TWO: &str = "
@@ -233,9 +241,87 @@ fn exact_statistics_leave_min_and_max_empty() {
     let text = sea.run("");
     assert_eq!(text.lines().next(), Some(HEADER));
     assert_eq!(column(&text, "observer"), ["0", "1", "0"]);
-    assert_eq!([column(&text, "min"), column(&text, "max")].concat(), [""; 6]);
+    assert_eq!([column(&text, "min"), column(&text, "max"), column(&text, "effective")].concat(), [""; 9]);
+    assert_eq!(column(&text, "method"), ["exact"; 3]);
     let json: Value = serde_json::from_str(&sea.run("--json")).unwrap();
     assert!(json[0]["min"].is_null() && json[2]["max"].is_null());
+}
+
+/// Wind 5, looked at in the mirror's direction, 50 draws: facets of a footprint of millimetres are hardly ever met by plain
+/// draws, whose mean was 1e-265 with a standard error of 0.
+const NARROW: &str = "
+limits = [1]
+[model]
+wind_speed = 5
+footprint = 0.003
+[[engagement]]
+laser = [-5000, 0, 8660.254]
+target = [0, 0, 0]
+observers = [[5000, 0, 8660.254], [8660.254, 0, 5000]]
+";
+
+#[test]
+fn no_false_zero_of_narrow_facets() {
+    let plain = Scenario::new(&format!("draws = 'random'{NARROW}"));
+    let output = plain.output("");
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(column(&text, "method"), ["draws"; 2]);
+    for row in 0..2 {
+        let of = |name: &str| floats(&text, name)[row];
+        assert!(of("mean") < 1e-9 && of("effective") < 10.0 && of("mean_upper") > 1.0, "{text}");
+        assert!(of("p_over_1") == 0.0 && (of("p_over_1_upper") - 0.0582).abs() < 1e-3, "{text}");
+    }
+    assert_eq!(
+        String::from_utf8(output.stderr).unwrap(),
+        "prob-water: warning: 2 of 2 rows rest on fewer than 10 effective draws (column effective), the first at time 0, \
+         observer 0: their mean and sem are not settled, and mean_upper is all that is known; take more instances\n"
+    );
+    // Draws by importance, the default where facets are narrow, and integrals agree.
+    let drawn = Scenario::new(NARROW).run("--instances 4000");
+    let exact = Scenario::new(&format!("statistics = 'exact'{NARROW}")).run("");
+    assert_eq!(column(&drawn, "method"), ["slopes"; 2]);
+    for row in 0..2 {
+        let [drawn_mean, exact_mean] = [&drawn, &exact].map(|text| floats(text, "mean")[row]);
+        let sem = floats(&drawn, "sem")[row];
+        assert!(sem > 0.0 && (drawn_mean - exact_mean).abs() < 4.0 * sem, "{drawn}{exact}");
+    }
+    let [_, instances] = Scenario::new(NARROW).run_with_instances("");
+    let (weights, f) = (floats(&instances, "weight"), floats(&instances, "f"));
+    let mean = weights.iter().zip(&f).map(|(w, f)| w * f).take(50).sum::<f64>() / 50.0;
+    let found = floats(&Scenario::new(NARROW).run(""), "mean")[0];
+    assert!((mean / found - 1.0).abs() < 1e-12, "{mean} against {found}");
+}
+
+/// Integrals say how far low views may be off, and `auto` takes draws there.
+#[test]
+fn methods_that_hold() {
+    let low = "
+[model]
+wind_speed = 5
+instances = 400
+[[engagement]]
+laser = [-870, 0, 108.4]
+target = [0, 0, 0]
+observers = [[5000, 0, 120], [5000, 0, 2800]]
+";
+    let exact = Scenario::new(&format!("statistics = 'exact'{low}"));
+    let output = exact.output("");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let [error, share] = ["mean_error", "share_error"].map(|name| floats(&text, name));
+    assert!(
+        error[0] > 0.2 && error[0] < 1.0 && error[1] < 0.02 && share[0] > 0.05 && share[1] <= 0.02,
+        "{text}"
+    );
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.starts_with("prob-water: warning: 1 of 2 rows may be off by their method"), "{said}");
+    let auto = Scenario::new(&format!("statistics = 'auto'{low}"));
+    let text = auto.run("");
+    assert_eq!(column(&text, "method"), ["draws", "exact"]);
+    assert_eq!(column(&text, "mean_error")[0], "0");
+    let drawn = Scenario::new(low).run("");
+    assert_eq!(floats(&text, "mean")[0], floats(&drawn, "mean")[0]);
+    // Too few components for integrals: draws serve all.
+    assert_eq!(column(&auto.run("--components 3"), "method"), ["draws"; 2]);
 }
 
 #[test]

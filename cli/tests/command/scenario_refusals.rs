@@ -189,10 +189,10 @@ fn settings() {
                 "limits = [0.1, 1]",
                 "statistics = 'all'",
                 "2",
-                "statistics = all is unknown: allowed is draws, exact",
+                "statistics = all is unknown: allowed is draws, exact, auto",
             ),
             ("limits = [0.1, 1]", "statistics = true", "2", "statistics = true is not a word"),
-            ("limits = [0.1, 1]", "draws = 'even'", "2", "allowed is random, sobol"),
+            ("limits = [0.1, 1]", "draws = 'even'", "2", "allowed is auto, random, sobol, slopes"),
             ("limits = [0.1, 1]", "whitecap_presence = 'no'", "2", "allowed is drawn, expected"),
             (
                 "limits = [0.1, 1]",
@@ -209,6 +209,10 @@ fn settings() {
             ("time = 0", "limits = [1]", "10", "unknown key limits"),
         ],
     );
+    let slopes = format!("draws = 'slopes'{GOOD}");
+    refused(slopes.as_bytes(), "--components 3", "", "components = 3 is out of range: allowed is at least 4");
+    let auto = format!("statistics = 'auto'{GOOD}");
+    refused(auto.as_bytes(), "", "", "--instances-out has no meaning with statistics = auto");
     let exact = format!("statistics = 'exact'{GOOD}");
     refused(exact.as_bytes(), "", "", "--instances-out has no meaning with statistics = exact");
 }
