@@ -5,7 +5,8 @@ from matplotlib.figure import Figure as Canvas
 from scipy.stats import spearmanr
 
 import figure_plot as plot
-from figure_claim import MARGIN, Claim, Figure, Tables, Verdict, at, bell, fit_bell, half_width, peak, sigmas
+from figure_claim import (MARGIN, Claim, Figure, Tables, Verdict, at, bell, fit_bell, half_width, least, peak,
+                          sigmas)
 from figure_data import BASE, BASE_TEXT, REPORT_INSTANCES, Command, averages, flat_wave, observers_of, select
 
 
@@ -131,7 +132,7 @@ def maximum_is_near_specular(tables: Tables) -> Verdict:
         curve = select(tables["averages"], plane=plane)
         top, (value, error) = peak(curve), at(curve, specular)
         sides = [at(curve, specular + side) for side in (-7.5, 7.5)]
-        margin = min(sigmas(value - v, error + e) for v, e in sides)
+        margin = least(sigmas(value - v, error + e) for v, e in sides)
         holds &= abs(top.angle - specular) <= 2.5 and margin > MARGIN
         parts.append(f"{name} {top.value:.4f} ± {top.error:.4f} 1/sr at {top.angle:g} degrees (specular "
                      f"{specular:g}), above both sides 7.5 degrees off by {margin:.0f} standard errors")
@@ -169,7 +170,7 @@ def is_wider_than_the_flat_waves(tables: Tables) -> Verdict:
         wide = np.diff(half_width(curve["angle"], curve["mean"]))[0]
         top = peak(curve)
         outside = [at(curve, 2.5 * np.floor(left / 2.5)), at(curve, 2.5 * np.ceil(right / 2.5))]
-        margin = min(sigmas(v - top.value / 2, e + top.error / 2) for v, e in outside)
+        margin = least(sigmas(v - top.value / 2, e + top.error / 2) for v, e in outside)
         holds &= margin > MARGIN
         parts.append(f"{name} {wide:.1f} against {right - left:.1f} degrees at half maximum; above half where "
                      f"the flat wave's is below, by {margin:.0f} standard errors")

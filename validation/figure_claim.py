@@ -1,6 +1,6 @@
 """A figure, the claims about it and the few statistics that decide them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -77,8 +77,15 @@ def at(curve: Table, angle: float) -> tuple[float, float]:
 
 
 def sigmas(difference: float, error: float) -> float:
-    """A difference in standard errors; 0 of 0 is 0."""
-    return difference / error if error > 0 else np.inf * np.sign(difference) if difference else 0.0
+    """A difference in standard errors; 0 of 0 is 0, and of an error that is not a number neither is this."""
+    if error == 0:
+        return np.inf * np.sign(difference) if difference else 0.0
+    return difference / error
+
+
+def least(margins: Iterable[float]) -> float:
+    """The smallest margin; not a number if one of them is not, so that it passes no test."""
+    return float(np.min(list(margins)))
 
 
 def steps(values: np.ndarray, errors: np.ndarray) -> np.ndarray:

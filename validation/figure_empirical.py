@@ -96,7 +96,7 @@ def in_plane_errors(tables: Tables) -> Verdict:
         exact, report = (select(rows, model=model) for model in ("full", "report"))
         seen = (exact["mean"] > 0.01 * exact["mean"].max()) & (abs(exact["angle"]) <= 70)
         worst.append(abs(report["mean"][seen] / exact["mean"][seen] - 1).max())
-    return Verdict(max(worst) < 0.05, f"largest for w* = {listed(WINDS)}: {listed([100 * x for x in worst], 2)} %")
+    return Verdict(bool(np.max(worst) < 0.05), f"largest for w* = {listed(WINDS)}: {listed([100 * x for x in worst], 2)} %")
 
 
 def spread_errors(tables: Tables) -> Verdict:

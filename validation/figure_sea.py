@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 import figure_plot as plot
-from figure_claim import MARGIN, Claim, Figure, Tables, Verdict, listed, sigmas
+from figure_claim import MARGIN, Claim, Figure, Tables, Verdict, least, listed, sigmas
 from figure_data import BASE, WINDS, Case, Command, Table, in_plane, select, stack
 
 GRAVITY = 9.81  # m/s^2
@@ -145,8 +145,8 @@ def ratios(tables: Tables, components: float) -> tuple[np.ndarray, np.ndarray, n
 def agrees_with_eq_51(tables: Tables, components: float, from_wind: float) -> Verdict:
     """Within 20 % of Eq. 51 from a wind on, by the margin."""
     winds, ratio, error = ratios(tables, components)
-    margin = min(sigmas(0.2 - abs(r - 1), e)
-                 for w, r, e in zip(winds, ratio, error, strict=True) if w >= from_wind)
+    margin = least(sigmas(0.2 - abs(r - 1), e)
+                   for w, r, e in zip(winds, ratio, error, strict=True) if w >= from_wind)
     parts = ", ".join(f"{r:.3f} ± {e:.3f}" for r, e in zip(ratio, error, strict=True))
     return Verdict(margin > MARGIN, f"M = {components:g}, D = {WHITECAP_FOOTPRINT} m: simulation over Eq. 51 is "
                    f"{parts} at w* = {listed(winds)}; from w* = {from_wind:g} within 20 % by at least "
@@ -171,7 +171,7 @@ def exceeds_eq_51_in_light_winds(tables: Tables) -> Verdict:
             if wind in winds:
                 margins.append(sigmas(ratio - 1, error))
                 parts.append(f"{ratio:.2f} ± {error:.2f} (w* = {wind:g}, M = {components:g})")
-    return Verdict(min(margins) > MARGIN, f"{', '.join(parts)}; above 1 by at least {min(margins):.0f} standard "
+    return Verdict(least(margins) > MARGIN, f"{', '.join(parts)}; above 1 by at least {least(margins):.0f} standard "
                    "errors")
 
 
@@ -180,9 +180,9 @@ def sharp_limit_is_lower(tables: Tables) -> Verdict:
     rows = tables["sharp"]
     margins = [sigmas(difference, error)
                for difference, error in zip(rows["eq_51"] - rows["sharp"], rows["error"], strict=True)]
-    return Verdict(min(margins) > MARGIN, "share below -0.39 g over Eq. 51: "
+    return Verdict(least(margins) > MARGIN, "share below -0.39 g over Eq. 51: "
                    f"{listed(rows['sharp'] / rows['eq_51'], 2)} at w* = {listed(rows['friction_velocity'])}; "
-                   f"lower by at least {min(margins):.0f} standard errors")
+                   f"lower by at least {least(margins):.0f} standard errors")
 
 
 # ---- Figure 5: heights
@@ -312,7 +312,7 @@ def nearly_free_of_d(tables: Tables) -> Verdict:
         one = usual(select(tables["slopes"], friction_velocity=wind))
         totals.append(100 * (one["ratio"].max() / one["ratio"].min() - 1))
         facets.append(100 * (one["facets"].max() / one["facets"].min() - 1))
-    return Verdict(max(totals) < 20, f"over D = 0.05 to 0.30 m at w* = {listed(WINDS[3:])} the sum changes by "
+    return Verdict(bool(np.max(totals) < 20), f"over D = 0.05 to 0.30 m at w* = {listed(WINDS[3:])} the sum changes by "
                    f"{listed(totals, 2)} %, the facets alone by {listed(facets, 2)} %")
 
 

@@ -56,7 +56,12 @@ impl<'a> Columns<'a> {
 
     /// Writes the density, 1/sr, with which [`Lobe::sample`] draws every row's observer.
     pub fn pdf(&self, lobe: &Lobe<f32>, pdf: &mut [f32]) -> Result<(), Error> {
-        self.in_tasks(Level::detect(), lobe, Quantity::Density, pdf)
+        self.pdf_on(Level::detect(), lobe, pdf)
+    }
+
+    /// The same in the vectors of a certain kind, as [`Columns::eval_on`].
+    pub fn pdf_on(&self, level: Level, lobe: &Lobe<f32>, pdf: &mut [f32]) -> Result<(), Error> {
+        self.in_tasks(level, lobe, Quantity::Density, pdf)
     }
 
     fn in_tasks(

@@ -65,6 +65,7 @@ mod tests {
                 worst = worst.max((s[1] + x.sin()).abs()).max((c[1] - x.cos()).abs());
                 worst = worst.max((s[3] - (x + 1.0).sin()).abs());
                 assert_eq!((s[2], c[2]), (0.0, 1.0));
+                assert!(s.iter().chain(&c).all(|x| x.is_finite()), "{x}");
             }
         }
         assert!(worst < 3e-16, "{worst:e}");

@@ -19,8 +19,8 @@ pub fn onset(friction_velocity: f64) -> [f64; 2] {
 }
 
 /// Probability of a whitecap (Eqs. 53-54) where the surface has a vertical acceleration in cm/s^2,
-/// at a friction velocity in cm/s. The printed ranges overlap below w* = 24.9; the first match
-/// counts, which is the only monotone reading.
+/// at a friction velocity in cm/s. The printed ranges overlap below w* = 24.9; there the first match
+/// counts: a step at -0.39 g. A step at -alpha g would be as monotone; the report leaves it open.
 pub fn probability(friction_velocity: f64, acceleration: f64) -> f64 {
     let [sure, none] = onset(friction_velocity);
     if acceleration <= sure {

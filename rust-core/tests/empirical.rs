@@ -1,5 +1,8 @@
 //! The report's empirical model: its numbers against the full model, and what is made of them.
 
+mod common;
+
+use common::worse;
 use prob_water::empirical::{Full, Moments};
 use prob_water::planes::Planes;
 use prob_water::table::{Grid, Plan};
@@ -177,7 +180,7 @@ fn held_out(points: usize, seed: u64) -> HeldOut {
             directions.iter().zip(&moments).map(|(o, m)| brdf(&water, m, source, *o)[0]).collect();
         let peak = values.iter().copied().fold(0.0, f64::max);
         let worst = |errors: Vec<f64>| {
-            errors.into_iter().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
+            errors.into_iter().fold(0.0, |a: f64, b| if b.is_nan() || b.abs() > a.abs() { b } else { a })
         };
         let seen = (0..directions.len()).filter(|k| values[*k] > 0.01 * peak);
         found.in_plane.push(worst(seen.map(|k| off(&lobes[0], directions[k], &moments[k])).collect()));
@@ -285,7 +288,7 @@ fn across_the_plane() {
                 "w* {w} incidence {incidence} at {step:+.1} sigma: mean {:+.3}, relative spread {:.2} of {:.2}",
                 off[0], relative[0], relative[1]
             );
-            worst = [0, 1].map(|m| worst[m].max(off[m].abs()));
+            worst = [0, 1].map(|m| worse(worst[m], off[m].abs()));
             count += 1;
         }
     }

@@ -118,7 +118,7 @@ impl Worst {
     /// Allowed is a share of the expected value and 4 standard errors.
     fn add(&mut self, found: f64, expected: f64, share: f64, error: f64, what: impl Fn() -> String) {
         let deviation = (found - expected).abs() / (share * expected + 4.0 * error);
-        if deviation > self.deviation {
+        if deviation.is_nan() || deviation > self.deviation {
             let percent = 100.0 * (found / expected - 1.0);
             let (deviation, text) = (deviation, format!("{}: {percent:+.2} %", what()));
             *self = Self { deviation, text };
@@ -177,7 +177,7 @@ fn campaign(seas: impl Iterator<Item = (f64, f64, u32, f64)>, compare: impl Fn(f
         let here = compare(w, footprint, components, incidence);
         let sea = format!("w* {w} D {footprint} M {components} theta_i {incidence}");
         println!("{sea}: {:.2} of what is allowed, {}", here.deviation, here.text);
-        if here.deviation > worst.deviation {
+        if here.deviation.is_nan() || here.deviation > worst.deviation {
             worst = Worst { deviation: here.deviation, text: format!("{sea}: {}", here.text) };
         }
     }

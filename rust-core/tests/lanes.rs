@@ -139,7 +139,8 @@ fn errors(f: &[f32], sea: &Parameters, [i, o, n]: &[Vectors; 3], wavy: bool) -> 
     [errors[errors.len() - 1], errors[errors.len() / 2]]
 }
 
-/// The bound of architecture for float32: 1e-4, 1e-5 in the median.
+/// The contract for float32 is 1e-4, and 1e-5 in the median: what lanes have to keep, whatever they do. They keep it by
+/// little: 6e-5 is the largest here, 9.8e-5 of 39 million pairs (docs/model.md).
 #[test]
 fn lanes_follow_float64() {
     let mut rng = StdRng::seed_from_u64(1);
@@ -180,22 +181,25 @@ fn densities_follow_float64() {
             let all = rows(&sea, wavy, 300, &mut rng);
             let tables = all.each_ref().map(Table::of);
             let [i, o, n] = tables.each_ref().map(Table::columns);
-            let mut pdf = vec![f32::NAN; 300];
-            Columns::new(i, o, wavy.then_some(n)).unwrap().pdf(&water.local_lobe().cast(), &mut pdf).unwrap();
-            for k in 0..300 {
-                let normal = wavy.then(|| wide(all[2][k]));
-                let exact = water.local_lobe().pdf(wide(all[0][k]), wide(all[1][k]), normal);
-                // On a wave a tilt is a difference: what rounding adds grows with its number of standard deviations.
-                let sigma = water.variances[0].min(water.variances[1]).sqrt();
-                let bound = 1e-4 + if wavy { 1e-5 / sigma } else { 0.0 };
-                let error = (f64::from(pdf[k]) - exact).abs();
-                assert!(error < bound * exact + 1e-30, "{} {exact} {sea:?}", pdf[k]);
+            let columns = Columns::new(i, o, wavy.then_some(n)).unwrap();
+            for level in levels() {
+                let mut pdf = vec![f32::NAN; 300];
+                columns.pdf_on(level, &water.local_lobe().cast(), &mut pdf).unwrap();
+                for k in 0..300 {
+                    let normal = wavy.then(|| wide(all[2][k]));
+                    let exact = water.local_lobe().pdf(wide(all[0][k]), wide(all[1][k]), normal);
+                    // On a wave a tilt is a difference: rounding grows with its number of standard deviations.
+                    let sigma = water.variances[0].min(water.variances[1]).sqrt();
+                    let bound = 1e-4 + if wavy { 1e-5 / sigma } else { 0.0 };
+                    let error = (f64::from(pdf[k]) - exact).abs();
+                    assert!(error < bound * exact + 1e-30, "{level:?}: {} {exact} {sea:?}", pdf[k]);
+                }
             }
         }
     }
 }
 
-/// What a row gives depends neither on its neighbours nor on threads, nor on how rows lie in memory.
+/// Values of a row depend neither on its neighbours nor on threads, nor on the layout of rows in memory.
 #[test]
 fn rows_are_independent() {
     let sea = Parameters { wind_direction: 20.0, ..Parameters::default() };
@@ -203,22 +207,30 @@ fn rows_are_independent() {
     let tables = all.each_ref().map(Table::of);
     let [i, o, n] = tables.each_ref().map(Table::columns);
     let lobe: Lobe<f32> = sea.configure().unwrap().local_lobe().cast();
-    let mut f = vec![0.0; 40_000];
-    Columns::new(i, o, Some(n)).unwrap().eval(&lobe, &mut f).unwrap();
-    for length in (0..40).chain([8191, 8192, 8193]) {
-        let of = |columns: Coordinates<'_>| columns.map(|x| x[7..7 + length].to_vec());
-        let [i, o, n] = [i, o, n].map(|c| Table(of(c)));
-        let mut part = vec![0.0; length];
-        let columns = Columns::new(i.columns(), o.columns(), Some(n.columns())).unwrap();
-        columns.eval(&lobe, &mut part).unwrap();
-        assert_eq!(part, f[7..7 + length]);
+    let both = |columns: Columns<'_>, level: Level, count: usize| {
+        let [mut f, mut pdf] = [vec![0.0; count], vec![0.0; count]];
+        columns.eval_on(level, &lobe, &mut f).unwrap();
+        columns.pdf_on(level, &lobe, &mut pdf).unwrap();
+        [f, pdf]
+    };
+    for level in levels() {
+        let whole = both(Columns::new(i, o, Some(n)).unwrap(), level, 40_000);
+        for length in (0..40).chain([8191, 8192, 8193]) {
+            let of = |columns: Coordinates<'_>| columns.map(|x| x[7..7 + length].to_vec());
+            let [i, o, n] = [i, o, n].map(|c| Table(of(c)));
+            let columns = Columns::new(i.columns(), o.columns(), Some(n.columns())).unwrap();
+            let part = both(columns, level, length);
+            assert!(part.iter().zip(&whole).all(|(part, whole)| *part == whole[7..7 + length]), "{level:?}");
+        }
     }
+    // As many rows of vectors, in the level that is detected.
+    let [f, pdf] = both(Columns::new(i, o, Some(n)).unwrap(), Level::detect(), 40_000);
     for threads in [1, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut again = vec![0.0; 40_000];
         let rows = Rows::new(&all[0], &all[1], Some(&all[2])).unwrap();
-        pool.install(|| rows.eval(&lobe, &mut again)).unwrap();
-        assert_eq!(again, f);
+        let [mut g, mut density] = [vec![0.0; 40_000], vec![0.0; 40_000]];
+        pool.install(|| rows.eval(&lobe, &mut g).and_then(|()| rows.pdf(&lobe, &mut density))).unwrap();
+        assert!(g == f && density == pdf, "{threads} threads");
     }
 }
 
@@ -245,13 +257,13 @@ fn finite_and_non_negative() {
                 let mut f = vec![f32::NAN; i.len()];
                 columns.eval_on(level, &lobe, &mut f).unwrap();
                 let mut pdf = vec![f32::NAN; i.len()];
-                columns.pdf(&lobe, &mut pdf).unwrap();
+                columns.pdf_on(level, &lobe, &mut pdf).unwrap();
                 for k in 0..i.len() {
                     let at = (level, i[k], o[k], tilted[k]);
-                    assert!(f[k].is_finite() && f[k] >= 0.0, "{} {at:?} {sea:?}", f[k]);
-                    assert!(pdf[k].is_finite() && pdf[k] >= 0.0, "{} {at:?} {sea:?}", pdf[k]);
-                    let below = i[k][2] <= 0.0 || o[k][2] <= 0.0;
-                    assert!(normals.is_some() || !below || f[k] == 0.0, "{} {at:?} {sea:?}", f[k]);
+                    let values = [f[k], pdf[k]];
+                    assert!(values.iter().all(|x| x.is_finite() && *x >= 0.0), "{values:?} {at:?} {sea:?}");
+                    let below = normals.is_none() && (i[k][2] <= 0.0 || o[k][2] <= 0.0);
+                    assert!(!below || values == [0.0; 2], "{values:?} {at:?} {sea:?}");
                 }
             }
         }

@@ -1,5 +1,8 @@
 //! Places of their own: a footprint that changes, and one drawn sea on a level surface.
 
+mod common;
+
+use common::worse;
 use prob_water::brdf::up;
 use prob_water::{EnsembleLobe, FacetTable, InstanceLobe, Parameters, SlopeMeasure, Surface, Wind};
 use std::f64::consts::PI;
@@ -39,7 +42,7 @@ fn tabulated_facets() {
                         let tilts = [h[0] / h[2] / exact.sigma_u, h[1] / h[2] / exact.sigma_c];
                         let far = tilts[0] * tilts[0] + tilts[1] * tilts[1];
                         if far < 25.0 {
-                            worst = worst.max((b / a - 1.0).abs());
+                            worst = worse(worst, (b / a - 1.0).abs());
                         }
                     }
                 }

@@ -13,6 +13,11 @@ pub fn rows(name: &str) -> Vec<Vec<f64>> {
     rows
 }
 
+/// The larger of two deviations; not a number counts as the largest, so that no bound takes it for small.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// Winds from calm to the end of Table 1, cm/s.

@@ -1,0 +1,137 @@
+//! Whitecaps of drawn waves (Eqs. 52-54): how many there are against Eq. 51, and how long they last.
+
+mod common;
+
+use common::water;
+use prob_water::ensemble::Samples;
+use prob_water::waves::{Draws, Numbers};
+use prob_water::{Aim, Engagement, Ensemble, Presence, Surface, Water, whitecap};
+use rayon::prelude::*;
+
+fn sea(w: f64, footprint: f64, components: u32) -> Water {
+    water(w, |p| {
+        p.surface = Surface::Instance;
+        p.footprint = footprint;
+        p.components = components;
+        p.whitecaps = true;
+    })
+}
+
+/// The mean probability of a whitecap (Eqs. 53-54) on drawn surfaces over Eq. 51's fraction, and its standard error.
+fn over_eq_51(sea: &Water, instances: u64) -> [f64; 2] {
+    const BATCH: u64 = 1000;
+    let (w, waves) = (sea.wind.friction_velocity, sea.waves());
+    let probability = |instance| {
+        let mut numbers = Numbers::new(Draws::Random, 9, instance);
+        numbers.next();
+        whitecap::probability(w, 100.0 * waves.surface(numbers, 0.0).point([0.0; 2]).acceleration)
+    };
+    // Batches are summed in order, so that sums do not depend on threads.
+    let batches: Vec<[f64; 2]> = (0..instances / BATCH)
+        .into_par_iter()
+        .map(|batch| {
+            let all = (batch * BATCH..(batch + 1) * BATCH).map(probability);
+            all.fold([0.0; 2], |[sum, square], p| [sum + p, square + p * p])
+        })
+        .collect();
+    let [mean, square] = [0, 1].map(|m| batches.iter().map(|b| b[m]).sum::<f64>() / instances as f64);
+    let expected = whitecap::fraction(sea.wind.w10);
+    [mean / expected, ((square - mean * mean) / instances as f64).sqrt() / expected]
+}
+
+/// Fig. 3: the mean of Eq. 53 over drawn surfaces follows Eq. 51 within 20 % from w* = 24 to 56, D = 0.10 m.
+#[test]
+fn whitecap_fraction() {
+    for w in [24.0, 32.0, 40.0, 48.0, 56.0] {
+        let [ratio, error] = over_eq_51(&sea(w, 0.10, 5), 400_000);
+        assert!((ratio - 1.0).abs() + 4.0 * error < 0.2, "w* {w}: {ratio} +- {error}");
+    }
+}
+
+/// Regression pins, not what ought to be: Eqs. 53-54 meet Eq. 51 at D = 0.10 m only, since the acceleration of drawn waves
+/// depends on the shortest of them. Pins are of 8,000,000 draws (M = 100: 4,000,000). Who mends this changes them and the
+/// table in docs/model.md.
+#[test]
+fn whitecaps_follow_the_footprint() {
+    const FOOTPRINTS: [f64; 7] = [0.02, 0.05, 0.10, 0.15, 0.30, 1.0, 10.0];
+    let of_five = [
+        (24.0, [6.821, 2.214, 0.982, 0.621, 0.239, 0.0148, 0.0]),
+        (40.0, [4.550, 1.940, 0.957, 0.619, 0.292, 0.0630, 0.0]),
+        (56.0, [3.216, 1.710, 1.001, 0.711, 0.383, 0.1317, 0.0009]),
+    ];
+    let mut pins = vec![];
+    for (w, ratios) in of_five {
+        pins.extend(FOOTPRINTS.into_iter().zip(ratios).map(|(footprint, ratio)| (w, footprint, 5, ratio)));
+    }
+    pins.extend([(16.0, 0.15, 5, 0.891), (16.0, 0.15, 20, 1.378), (16.0, 0.15, 100, 1.541)]);
+    for (w, footprint, components, pin) in pins {
+        let [found, error] =
+            over_eq_51(&sea(w, footprint, components), if components > 20 { 200_000 } else { 400_000 });
+        let allowed = 4.0 * error + 0.01 * pin;
+        assert!(
+            (found - pin).abs() <= allowed,
+            "regression pin: w* {w} D {footprint} M {components}: {found} +- {error} instead of {pin}"
+        );
+        // Rare ones excepted, a change by two fifths shows.
+        assert!(pin < 0.02 || allowed < 0.4 * pin, "w* {w} D {footprint} M {components}: {allowed}");
+    }
+}
+
+/// A strong wind's whitecaps under a vertical beam, at times in s.
+fn under_a_beam(times: &[f64], presence: Presence, instances: u64) -> Samples {
+    let mut water = sea(56.0, 0.15, 5);
+    water.parameters.instances = instances;
+    let ensemble = Ensemble { presence, ..Ensemble::new(&water) };
+    let beam = |time: &f64| {
+        Engagement::new(*time, [0.0, 0.0, 1e3], Aim::Target([0.0; 3]), &[[0.0, 0.0, 1e3]]).unwrap()
+    };
+    ensemble.sample(&times.iter().map(beam).collect::<Vec<_>>(), &|_| ()).unwrap()
+}
+
+/// An instance has a whitecap at exactly those times at which the probability there exceeds a number of its own: none of
+/// its times without one has a higher probability than one with it.
+#[test]
+fn one_random_number_serves_an_instance_at_all_times() {
+    let times: Vec<f64> = (0..200).map(|t| 0.25 * f64::from(t)).collect();
+    let [drawn, expected] = [Presence::Drawn, Presence::Expected].map(|p| under_a_beam(&times, p, 2000));
+    // The lowest probability with a whitecap and the highest without, of every instance; and how often each was seen.
+    let (mut lowest, mut highest, mut seen) = (vec![1.0f64; 2000], vec![0.0f64; 2000], [0, 0]);
+    for time in 0..times.len() {
+        for ((i, hit, _), (_, same, _)) in drawn.of(time, 0).zip(expected.of(time, 0)) {
+            assert_eq!(hit.position, same.position);
+            let i = i as usize;
+            if hit.whitecap == 1.0 {
+                lowest[i] = lowest[i].min(same.whitecap);
+                seen[0] += usize::from(same.whitecap < 1.0);
+            } else {
+                highest[i] = highest[i].max(same.whitecap);
+                seen[1] += usize::from(same.whitecap > 0.0);
+            }
+        }
+    }
+    assert!(lowest.iter().zip(&highest).all(|(low, high)| high < low));
+    // Probabilities between 0 and 1 came out both ways often enough for another number at another time to show.
+    assert!(seen.iter().all(|n| *n > 500), "{seen:?}");
+}
+
+/// The number stays, the wave does not: of the whitecaps under a beam (w* = 56 cm/s, D = 0.15 m) 9 of 100 are there half a
+/// second later, hardly more than with another number then. Regression pins, of 2,000,000 draws.
+#[test]
+fn whitecaps_do_not_last() {
+    let times = [0.0, 0.1, 0.2, 0.5, 1.0];
+    let [drawn, expected] = [Presence::Drawn, Presence::Expected].map(|p| under_a_beam(&times, p, 100_000));
+    let at = |samples: &Samples, time: usize| -> Vec<f64> {
+        samples.of(time, 0).map(|(_, hit, _)| hit.whitecap).collect()
+    };
+    let (first, chance) = (at(&drawn, 0), at(&expected, 0));
+    for (time, pin) in [(1, 0.415f64), (2, 0.134), (3, 0.092), (4, 0.032)] {
+        let both: f64 = first.iter().zip(at(&drawn, time)).map(|(a, b)| a * b).sum();
+        let count: f64 = first.iter().sum();
+        let (share, error) = (both / count, (pin * (1.0 - pin) / count).sqrt());
+        assert!((share - pin).abs() < 4.0 * error, "regression pin: {share} +- {error} instead of {pin}");
+        // With a number drawn anew at the second time.
+        let anew: f64 = chance.iter().zip(at(&expected, time)).map(|(a, b)| a * b).sum();
+        let anew = anew / chance.iter().sum::<f64>();
+        assert!((share - anew).abs() < 0.03 + 4.0 * error, "{share} {anew}");
+    }
+}
