@@ -219,10 +219,10 @@ public:
         double angle = props.get<double>("pixel_angle", 0.);
         if (!(angle >= 0. && angle < 90.) || (angle > 0. && !m_pixel))
             Throw("prob_water: pixel_angle = %s is out of range: allowed is 0 to 90 degrees, with footprint = pixel", angle);
-        if (dr::is_jit_v<Float> && m_pixel && angle == 0.)
-            Throw("prob_water: footprint = pixel needs pixel_angle here: traced variants have no ray differentials");
         m_pixel_angle = (ScalarFloat) (angle * dr::Pi<double> / 180.);
         configure();
+        if (dr::is_jit_v<Float> && m_pixel && angle == 0.)
+            Throw("prob_water: footprint = pixel needs pixel_angle here: traced variants have no ray differentials");
     }
 
     void take_sea(const Properties &sea) override {

@@ -41,7 +41,8 @@ pub fn build_with(out: &Path, flags: &[&str]) -> Result<()> {
     let bridge =
         rust.out_dir.context("the build script of prob-water-mitsuba did not run")?.join("cxxbridge/include");
     let packages = site_packages()?;
-    let versions = [version("mitsuba")?, version("drjit")?];
+    let versions = [("MITSUBA", setup::version("mitsuba")?), ("DRJIT", setup::version("drjit")?)]
+        .map(|(name, version)| format!("-DPROB_WATER_{name}=\"{version}\""));
     let sources = util::root().join("mitsuba-plugin/cpp");
     let directory = out.join("plugins");
     util::create_dir(&directory)?;
@@ -114,13 +115,6 @@ fn check_processor() -> Result<()> {
 fn site_packages() -> Result<PathBuf> {
     let code = "import sysconfig; print(sysconfig.get_path('platlib'))";
     Ok(util::output(util::command(setup::python()).args(["-c", code]), "asking for site-packages")?.into())
-}
-
-/// The version of a package in `.venv`, as a definition for the compiler.
-fn version(package: &str) -> Result<String> {
-    let code = format!("import importlib.metadata; print(importlib.metadata.version('{package}'))");
-    let version = util::output(util::command(setup::python()).args(["-c", &code]), "asking for a version")?;
-    Ok(format!("-DPROB_WATER_{}=\"{version}\"", package.to_uppercase()))
 }
 
 /// The latest modification of the files at these paths and below.
