@@ -21,11 +21,12 @@ SCALAR_BOUND = 5e-5
 REACH = 55
 
 
-def evaluate(mi, bsdf, i, o):
-    """f cos(theta_o) and the density of the plugin for rows of directions, in any variant."""
+def evaluate(mi, bsdf, i, o, mode="Radiance"):
+    """f cos(theta_o) and the density of the plugin for rows of directions, in any variant. In mode Importance the light is at
+    i, in mode Radiance at o, which matters where a surface is not reciprocal."""
     import drjit as dr
 
-    context = mi.BSDFContext()
+    context = mi.BSDFContext(getattr(mi.TransportMode, mode))
     if dr.is_jit_v(mi.Float):
         si = dr.zeros(mi.SurfaceInteraction3f, len(i))
         si.wi = mi.Vector3f(np.ascontiguousarray(i.T))

@@ -77,11 +77,11 @@ def test_scalar_and_traced_agree(use, switches):
     assert np.max(np.abs(weight - weight2)[same]) < 2e-3
 
 
-def draw(mi, bsdf, i, uniform):
+def draw(mi, bsdf, i, uniform, mode="Radiance"):
     """Directions and weights that `sample` gives, in any variant."""
     import drjit as dr
 
-    context = mi.BSDFContext()
+    context = mi.BSDFContext(getattr(mi.TransportMode, mode))
     if dr.is_jit_v(mi.Float):
         si = dr.zeros(mi.SurfaceInteraction3f, len(i))
         si.wi = mi.Vector3f(np.ascontiguousarray(i.T))

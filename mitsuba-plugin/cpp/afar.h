@@ -1,6 +1,6 @@
 /**
  * The sea from afar as a Dr.Jit expression, `surface = "ensemble"`: the twin of the Rust core's ensemble_lobe.rs over the
- * same table, interpolated linearly. Directions are drawn by the Lobe beside it.
+ * same table, interpolated linearly, D by squares. Directions are drawn by the Lobe beside it.
  */
 #pragma once
 
@@ -15,7 +15,7 @@ template <typename Float_> struct Afar {
     using UInt32 = drjit::uint32_array_t<Float>;
     using Vector3f = mitsuba::Vector<Float, 3>;
     using Buffer = mitsuba::DynamicBuffer<Float>;
-    /// D, means and variances of the slopes upwind and crosswind, and what fills a packet.
+    /// D, means and variances of the slopes upwind and crosswind, second differences of D, and what fills a packet.
     using Cell = drjit::Array<Float, 8>;
 
     /// Nodes on a side of the table; 0 where there are no waves, or the surface is another.
@@ -41,8 +41,8 @@ template <typename Float_> struct Afar {
 
     DRJIT_STRUCT(Afar, inv_step_u, inv_step_c, sigma_u, sigma_c, foam, foam_u, foam_c, cells)
 
-    /// f cos(theta_o) of some of its parts.
-    Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, Parts parts) const {
+    /// f times a cosine of some of its parts, for light from i seen from o.
+    Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, const Float &cosine, Parts parts) const {
         namespace dr = drjit;
         auto [i_u, i_c] = lobe.wind_frame(i.x(), i.y());
         auto [o_u, o_c] = lobe.wind_frame(o.x(), o.y());
@@ -115,7 +115,7 @@ template <typename Float_> struct Afar {
         // Over cos theta_i (1 + L_i + L_o).
         Float h_i = lobe.hidden(i.z(), waves(i_u, i_c)), h_o = lobe.hidden(o.z(), waves(o_u, o_c)),
               over = dr::fmadd(i.z(), o.z(), dr::fmadd(o.z(), h_i, i.z() * h_o));
-        return dr::select(lit, reflected * o.z() / larger(over, Lobe<Float>::Tiny), 0.f);
+        return dr::select(lit, reflected * cosine / larger(over, Lobe<Float>::Tiny), 0.f);
     }
 
 private:
@@ -135,7 +135,10 @@ private:
         auto node = [&](uint32_t offset) { return dr::gather<Cell>(cells, index + offset, inside); };
         Cell near = dr::fmadd(Cell(c), node(1) - node(0), node(0)),
              far = dr::fmadd(Cell(c), node(rows + 1) - node(rows), node(rows));
-        return dr::fmadd(Cell(u), far - near, near);
+        Cell cell = dr::fmadd(Cell(u), far - near, near);
+        // What a straight line misses.
+        cell[0] = larger(dr::fnmadd(.5f, dr::fmadd(u * (1.f - u), cell[5], c * (1.f - c) * cell[6]), cell[0]), 0.f);
+        return cell;
     }
 
     /// sqrt(2) times the drawn slopes' standard deviation along a horizontal vector, times its length.

@@ -59,8 +59,8 @@ template <typename Float_> struct Tabled {
     DRJIT_STRUCT(Tabled, cos_wind, sin_wind, last, inv_step, carried_u, carried_c, inv_sigma_u, inv_sigma_c, inv_step_u,
                  inv_step_c, in_plane, widths, densities)
 
-    /// f cos(theta_o) of some of its parts.
-    Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, Parts parts) const {
+    /// f times a cosine of some of its parts, for light from i seen from o.
+    Float eval(const Lobe<Float> &lobe, const Vector3f &i, const Vector3f &o, const Float &cosine, Parts parts) const {
         namespace dr = drjit;
         constexpr float Small = Lobe<Float>::Small;
         Mask lit = i.z() > 0.f && o.z() > 0.f;
@@ -132,7 +132,7 @@ template <typename Float_> struct Tabled {
         }
         if (parts.whitecaps && whitecaps)
             f = dr::fmadd(lobe.whitecap_brdf * (1.f / Shares), foam, f);
-        return dr::select(lit, f * o_z, 0.f);
+        return dr::select(lit, f * cosine, 0.f);
     }
 
 private:

@@ -37,9 +37,9 @@ struct ProbWaterPlace {
 struct ProbWaterSpot {
     alignas(16) unsigned char bytes[256];
 };
-float prob_water_bsdf_eval(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
+float prob_water_bsdf_eval(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3], bool to_light);
 float prob_water_bsdf_pdf(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
-void prob_water_bsdf_sample(const prob_water::Water *, uint32_t parts, const float i[3], const float u[3],
+void prob_water_bsdf_sample(const prob_water::Water *, uint32_t parts, const float i[3], const float u[3], bool to_light,
                             ProbWaterSample *sample);
 void prob_water_spot(const prob_water::Water *, const ProbWaterPlace *, ProbWaterSpot *);
 float prob_water_spot_whitecaps(const ProbWaterSpot *);
@@ -97,8 +97,8 @@ Wind-roughened water (:monosp:`prob_water`)
  * - pixel_angle
    - |float|
    - For footprint "pixel": the angle in degrees that a pixel subtends at the camera, the field of view over the pixels
-     across. The distance counts from where the ray starts: of water seen in a mirror, from the mirror. (Default: unknown;
-     without differentials the footprint then is that of a number left out)
+     across. The distance counts from where the ray starts: of water seen in a mirror, from the mirror. Traced variants must
+     be told. (Default: unknown; without differentials the footprint then is that of a number left out)
 
  * - surface
    - |string|
@@ -169,7 +169,7 @@ Wind-roughened water (:monosp:`prob_water`)
  * - water_leaving
    - |spectrum| or |texture|
    - Diffuse reflectance of the water below its surface, under what the surface reflects: the share of the light
-     entering the water that comes out again. (Default: none, black water)
+     entering the water that comes out again, 0 to 1; a texture is held within. (Default: none, black water)
    - |exposed|, |differentiable|
 
 The sea as a renderer sees it from where single waves are not resolved: the water BRDF of the report
@@ -210,6 +210,7 @@ public:
     ProbWater(const Properties &props) : Base(props), m_options(prob_water::options()) {
         if (props.has_property("water_leaving"))
             m_water_leaving = props.get_texture<Texture>("water_leaving");
+        check_water_leaving();
         take(props);
         if (props.has_property("table")) {
             std::string path = file_resolver()->resolve(props.get<std::string_view>("table")).string();
@@ -220,6 +221,8 @@ public:
             Throw("prob_water: pixel_angle = %s is out of range: allowed is 0 to 90 degrees, with footprint = pixel", angle);
         m_pixel_angle = (ScalarFloat) (angle * dr::Pi<double> / 180.);
         configure();
+        if (dr::is_jit_v<Float> && m_pixel && angle == 0.)
+            Throw("prob_water: footprint = pixel needs pixel_angle here: traced variants have no ray differentials");
     }
 
     void take_sea(const Properties &sea) override {
@@ -251,6 +254,7 @@ public:
     }
 
     void parameters_changed(const std::vector<std::string> & /*keys*/) override {
+        check_water_leaving();
         try {
             refuse([&] {
                 for (auto &[name, value] : m_exposed)
@@ -332,6 +336,22 @@ public:
         return depolarizer<Spectrum>(diffuse) & active;
     }
 
+    // Numbers are read by the base class where their type is the traced one, which it is in scalar variants alone.
+    UnpolarizedSpectrum eval_attribute(const std::string &name, const SurfaceInteraction3f &si, Mask active) const override {
+        const ScalarFloat *number = exposed(name);
+        return number ? dr::select(active, UnpolarizedSpectrum(*number), 0.f) : Base::eval_attribute(name, si, active);
+    }
+
+    Float eval_attribute_1(const std::string &name, const SurfaceInteraction3f &si, Mask active) const override {
+        const ScalarFloat *number = exposed(name);
+        return number ? dr::select(active, Float(*number), 0.f) : Base::eval_attribute_1(name, si, active);
+    }
+
+    Color3f eval_attribute_3(const std::string &name, const SurfaceInteraction3f &si, Mask active) const override {
+        const ScalarFloat *number = exposed(name);
+        return number ? dr::select(active, Color3f(*number), 0.f) : Base::eval_attribute_3(name, si, active);
+    }
+
     std::string to_string() const override {
         std::ostringstream text;
         text << "ProbWater[\n  " << string::indent(std::string(water().describe()), 2);
@@ -353,10 +373,11 @@ private:
     static constexpr const char *Exposed[] = { "wind_speed", "wind_height", "friction_velocity", "beaufort",
                                                "wind_direction", "footprint", "time", "wavelength", "ior" };
 
-    /// The lobes that a context asks for, and whether light from below takes part.
+    /// The lobes that a context asks for, whether light from below takes part, and whether wo is the way to the light (on a
+    /// path from the camera) or the light's own.
     struct Enabled {
         Parts parts;
-        bool below;
+        bool below, to_light;
         bool none() const { return parts.none() && !below; }
     };
 
@@ -407,13 +428,52 @@ private:
                 else if (name == "whitecaps")
                     m_whitecap_texture = props.get_texture<Texture>(name);
                 else
-                    Throw("prob_water: %s is an object: allowed is a number, true or false, or a word", name);
+                    Throw("prob_water: %s is an object or an array: allowed is a plain number, true or false, or a word", name);
             };
             prob_water::words(props, prob_water::vocabulary(), word, object);
         });
     }
 
     const prob_water::Water &water() const { return **m_water; }
+
+    const ScalarFloat *exposed(const std::string &wanted) const {
+        for (auto &[name, value] : m_exposed)
+            if (name == wanted)
+                return &value;
+        return nullptr;
+    }
+
+    /// Refuses a water_leaving that is no share of the light, and gives back what it was; what varies is held within 0 and 1
+    /// where it is evaluated.
+    void check_water_leaving() {
+        struct Numbers final : TraversalCallback {
+            std::vector<Float *> found;
+            void put_value(std::string_view, void *value, uint32_t, const std::type_info &type) override {
+                if (type == typeid(Float) && dr::width(*(Float *) value) == 1)
+                    found.push_back((Float *) value);
+                // Colours of spectral variants are coefficients.
+                if (!is_spectral_v<Spectrum> && type == typeid(Color3f))
+                    for (size_t k = 0; k < 3; ++k)
+                        found.push_back(&(*(Color3f *) value)[k]);
+            }
+            void put_object(std::string_view, Object *, uint32_t) override { }
+        } numbers;
+        if (!m_water_leaving || m_water_leaving->is_spatially_varying())
+            return;
+        m_water_leaving->traverse(&numbers);
+        std::vector<ScalarFloat> shares;
+        for (Float *number : numbers.found)
+            shares.push_back((ScalarFloat) dr::slice(dr::detach(*number)));
+        auto wrong = std::find_if(shares.begin(), shares.end(), [](ScalarFloat x) { return !(x >= 0.f && x <= 1.f); });
+        if (wrong == shares.end()) {
+            m_shares = shares;
+            return;
+        }
+        for (size_t k = 0; k < m_shares.size(); ++k)
+            *numbers.found[k] = dr::opaque<Float>(m_shares[k]);
+        m_water_leaving->parameters_changed();
+        Throw("prob_water: water_leaving = %s is out of range: allowed is 0 to 1", *wrong);
+    }
 
     /// How the footprint changes from place to place; empty where it does not.
     std::string varied() const { return m_pixel ? "pixel" : m_footprint ? "a texture" : ""; }
@@ -450,6 +510,8 @@ private:
             m_tabled = Tabled(water.fine_grid(), c);
             m_facets = FacetTable(water.facet_rows());
             m_drawn = Drawn(water.drawn_waves());
+            // Copies from here to there keep their memory up to the next kernel, or to this.
+            dr::sync_thread();
         }
         m_whitecaps = m_whitecap_texture || c.whitecaps;
 
@@ -471,7 +533,8 @@ private:
 
     Enabled enabled(const BSDFContext &ctx) const {
         bool diffuse = m_components.size() > 1 && ctx.is_enabled(BSDFFlags::DiffuseReflection, 1);
-        return { { ctx.is_enabled(BSDFFlags::GlossyReflection, 0), m_whitecaps && diffuse }, m_water_leaving && diffuse };
+        return { { ctx.is_enabled(BSDFFlags::GlossyReflection, 0), m_whitecaps && diffuse }, m_water_leaving && diffuse,
+                 ctx.mode == TransportMode::Radiance };
     }
 
     /// The facets' footprint at a place.
@@ -545,23 +608,25 @@ private:
 
     /// f cos(theta_o) of facets and whitecaps in traced variants.
     template <bool Fine>
-    Float value(const Here &at, const typename Lobe::Geometry &g, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
+    Float value(Enabled on, const Here &at, const typename Lobe::Geometry &g, const Vector3f &wi, const Vector3f &wo) const {
+        const Vector3f &light = on.to_light ? wo : wi, &observer = on.to_light ? wi : wo;
         if (m_tabled.incidences)
-            return m_tabled.eval(at.lobe, wi, wo, parts);
-        return m_afar.rows ? m_afar.eval(at.lobe, wi, wo, parts) : at.lobe.template eval<Fine>(g, parts);
+            return m_tabled.eval(at.lobe, light, observer, wo.z(), on.parts);
+        return m_afar.rows ? m_afar.eval(at.lobe, light, observer, wo.z(), on.parts)
+                           : at.lobe.template eval<Fine>(g, on.parts);
     }
 
     /// f cos(theta_o) and density of facets and whitecaps, as far as wanted.
     template <bool Value, bool Pdf>
-    std::pair<Float, Float> surface(const Here &at, const Vector3f &wi, const Vector3f &wo, Parts parts) const {
+    std::pair<Float, Float> surface(Enabled on, const Here &at, const Vector3f &wi, const Vector3f &wo) const {
         if constexpr (dr::is_jit_v<Float>) {
             auto run = [&](auto fine) {
                 auto g = at.lobe.template geometry<fine()>(wi, wo, at.frame);
                 Float value = 0.f, pdf = 0.f;
                 if (Value)
-                    value = this->template value<fine()>(at, g, wi, wo, parts);
+                    value = this->template value<fine()>(on, at, g, wi, wo);
                 if (Pdf)
-                    pdf = at.lobe.pdf(g, parts);
+                    pdf = at.lobe.pdf(g, on.parts);
                 return std::pair<Float, Float>(value, pdf);
             };
             // Gram-Charlier's polynomial asks for digits to spare, and a turn by the wind where its two deviations differ.
@@ -569,11 +634,11 @@ private:
             return Value && closed && fine ? run(std::true_type()) : run(std::false_type());
         } else {
             const prob_water::Water *sea = &water();
-            uint32_t bits = parts.bits();
+            uint32_t bits = on.parts.bits();
             if (m_places)
                 return { Value ? prob_water_spot_eval(&at.spot, bits, wi.data(), wo.data()) : 0.f,
                          Pdf ? prob_water_spot_pdf(&at.spot, bits, wi.data(), wo.data()) : 0.f };
-            return { Value ? prob_water_bsdf_eval(sea, bits, wi.data(), wo.data()) : 0.f,
+            return { Value ? prob_water_bsdf_eval(sea, bits, wi.data(), wo.data(), on.to_light) : 0.f,
                      Pdf ? prob_water_bsdf_pdf(sea, bits, wi.data(), wo.data()) : 0.f };
         }
     }
@@ -584,14 +649,14 @@ private:
                                         Mask active) const {
         if (on.below)
             return eval_pdf<Value, Pdf>(on, at, si, wo, below(on, at, si, active), active);
-        auto [value, pdf] = surface<Value, Pdf>(at, si.wi, wo, on.parts);
+        auto [value, pdf] = surface<Value, Pdf>(on, at, si.wi, wo);
         return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
     }
 
     template <bool Value, bool Pdf>
     std::pair<Spectrum, Float> eval_pdf(Enabled on, const Here &at, const SurfaceInteraction3f &si, const Vector3f &wo,
                                         const Below &below, Mask active) const {
-        auto [value, pdf] = surface<Value, Pdf>(at, si.wi, wo, on.parts);
+        auto [value, pdf] = surface<Value, Pdf>(on, at, si.wi, wo);
         if (Pdf)
             pdf = dr::lerp(pdf, cosine_pdf(si.wi, wo), below.share);
         return { spectrum(value + from_below(at, si.wi, wo, below.reflectance)) & active, dr::select(active, pdf, 0.f) };
@@ -620,7 +685,7 @@ private:
                 if (m_places)
                     prob_water_spot_sample(&at.spot, on.parts.bits(), si.wi.data(), u, &s);
                 else
-                    prob_water_bsdf_sample(&water(), on.parts.bits(), si.wi.data(), u, &s);
+                    prob_water_bsdf_sample(&water(), on.parts.bits(), si.wi.data(), u, on.to_light, &s);
                 bs.wo = Vector3f(s.direction[0], s.direction[1], s.direction[2]);
                 bs.pdf = s.pdf;
                 value = s.value;
@@ -639,7 +704,7 @@ private:
             // A weight divides two Gaussians: it needs no digits to spare.
             auto g = at.lobe.template geometry<false>(si.wi, bs.wo, at.frame);
             bs.pdf = at.lobe.pdf(g, on.parts);
-            value = this->template value<false>(at, g, si.wi, bs.wo, on.parts);
+            value = this->template value<false>(on, at, g, si.wi, bs.wo);
         }
         active &= bs.pdf > 0.f;
         return finish(bs, spectrum(value / bs.pdf), whitecap, active);
@@ -682,6 +747,7 @@ private:
     std::vector<std::string> m_given;
     std::vector<std::pair<std::string, ScalarFloat>> m_exposed;
     ref<Texture> m_footprint, m_whitecap_texture, m_water_leaving;
+    std::vector<ScalarFloat> m_shares;
     ScalarFloat m_own_footprint = 0.f, m_pixel_angle = 0.f;
     bool m_pixel = false, m_whitecaps = false, m_drawn_waves = false, m_places = false, m_lent = false;
     Lobe m_lobe;

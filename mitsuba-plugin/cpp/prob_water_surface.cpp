@@ -72,8 +72,8 @@ A drawn sea (:monosp:`prob_water_surface`)
 
  * - (nested plugin)
    - |bsdf|
-   - Without one the shape makes its own :monosp:`prob_water`. One of that type takes the sea from the shape; any other
-     stays as it is.
+   - Without one the shape makes its own :monosp:`prob_water`. One of that type takes the sea from the shape, also inside of
+     another, such as :monosp:`twosided`; any other stays as it is.
 
  * - vertex_footprint, vertex_whitecaps
    - |float|
@@ -145,7 +145,7 @@ public:
             throw;
         }
         fill();
-        if (auto *takes = dynamic_cast<prob_water::TakesSea *>(m_bsdf.get()))
+        for (prob_water::TakesSea *takes : prob_water::takers(m_bsdf.get()))
             takes->set_time(m_time);
         std::vector<std::string> moved = keys;
         moved.insert(moved.end(), { "vertex_positions", "vertex_normals" });
@@ -188,7 +188,7 @@ private:
     /// Calls with the name and the value of every word that the scene gives.
     template <typename Word> static void words(const Properties &props, Word word) {
         prob_water::words(props, prob_water::mesh_vocabulary(), word, [](const std::string &name) {
-            Throw("prob_water_surface: %s is an object: allowed is a number, true or false, or a word", name);
+            Throw("prob_water_surface: %s is an object or an array: allowed is a plain number, true or false, or a word", name);
         });
     }
 
@@ -234,9 +234,6 @@ private:
             nested |= prop.template try_get<BSDF>() != nullptr;
         if (!nested)
             m_bsdf = PluginManager::instance()->create_object<BSDF>(Properties("prob_water"));
-        auto *takes = dynamic_cast<prob_water::TakesSea *>(m_bsdf.get());
-        if (!takes)
-            return;
 
         Properties sea("prob_water");
         sea.set("components", (int64_t) m_mesh->components());
@@ -249,7 +246,8 @@ private:
             sea.set("whitecaps", attribute("vertex_whitecaps"));
         else
             sea.set("whitecaps", false);
-        takes->take_sea(sea);
+        for (prob_water::TakesSea *takes : prob_water::takers(m_bsdf.get()))
+            takes->take_sea(sea);
     }
 
     static ref<Object> attribute(const char *name) {

@@ -26,11 +26,12 @@ pub struct Spot {
 const _: () = assert!(size_of::<Spot>() <= 256 && align_of::<Spot>() <= 16);
 
 impl Water {
-    /// f cos(theta_o) of some of its parts.
-    fn eval(&self, i: [f32; 3], o: [f32; 3], parts: Parts) -> f32 {
+    /// f cos(theta_o) of some of its parts; the light is at `o` where the path runs `to_light`, else at `i`.
+    fn eval(&self, i: [f32; 3], o: [f32; 3], parts: Parts, to_light: bool) -> f32 {
+        let (light, observer) = if to_light { (o, i) } else { (i, o) };
         let f = match &self.waves {
-            Waves::Afar(afar) => afar.eval_parts(i.map(f64::from), o.map(f64::from), parts) as f32,
-            Waves::Tabled(tabled) => tabled.eval_parts(i, o, parts),
+            Waves::Afar(afar) => afar.eval_parts(light.map(f64::from), observer.map(f64::from), parts) as f32,
+            Waves::Tabled(tabled) => tabled.eval_parts(light, observer, parts),
             _ => self.lobe.eval_parts(i, o, None, parts),
         };
         f * o[2].max(0.0)
@@ -60,9 +61,16 @@ fn parts(bits: u32) -> Parts {
 }
 
 /// f cos(theta_o) of the parts in `bits` (1 facets, 2 whitecaps), about the normal (0, 0, 1), where all places are alike.
+/// The path runs to the light, which is then at `o`, or comes from it.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_bsdf_eval(water: &Water, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
-    water.eval(*i, *o, parts(bits))
+pub extern "C" fn prob_water_bsdf_eval(
+    water: &Water,
+    bits: u32,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    to_light: bool,
+) -> f32 {
+    water.eval(*i, *o, parts(bits), to_light)
 }
 
 /// Density, 1/sr, with which [`prob_water_bsdf_sample`] draws `o`.
@@ -78,11 +86,12 @@ pub extern "C" fn prob_water_bsdf_sample(
     bits: u32,
     i: &[f32; 3],
     u: &[f32; 3],
+    to_light: bool,
     sample: &mut Sample<f32>,
 ) {
     *sample = water.lobe.sample_parts(*i, None, *u, parts(bits));
     sample.f = match water.waves {
-        Waves::Afar(_) | Waves::Tabled(_) => water.eval(*i, sample.direction, parts(bits)),
+        Waves::Afar(_) | Waves::Tabled(_) => water.eval(*i, sample.direction, parts(bits), to_light),
         _ => sample.f * sample.direction[2].max(0.0),
     };
 }

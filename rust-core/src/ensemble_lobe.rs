@@ -61,14 +61,15 @@ pub struct EnsembleLobe {
     waves: Option<Waves>,
 }
 
-/// The table as traced code reads it, with linear interpolation.
+/// The table as traced code reads it, with linear interpolation and, of D, what second differences add to it.
 #[derive(Debug, Clone)]
 pub struct Table {
     /// Nodes on a side, the half vector's slope 0 in the middle.
     pub rows: u32,
     /// Between nodes, tilt angles upwind and crosswind.
     pub steps: [f64; 2],
-    /// Row by row (upwind) of every node: D, means and variances of the slopes upwind and crosswind, and zeros up to eight.
+    /// Row by row (upwind) of every node: D, means and variances of the slopes upwind and crosswind, the second differences of D
+    /// upwind and crosswind (which linear interpolation would miss), and a zero.
     pub cells: Vec<f32>,
     /// Standard deviations of the drawn slopes, upwind and crosswind.
     pub sigma: [f64; 2],
@@ -187,16 +188,24 @@ impl EnsembleLobe {
         let rows = 2 * FINER * NODES + 1;
         let steps = waves.facets.steps / FINER as f64;
         let middle = (FINER * NODES) as f64;
-        let cells = (0..rows * rows).into_par_iter().flat_map_iter(|n| {
-            let place = DVec2::new((n / rows) as f64 - middle, (n % rows) as f64 - middle);
-            let Cell { density, mean, variance } = waves.facets.at_angles(place * steps);
-            [density, mean.x, mean.y, variance.x, variance.y, 0.0, 0.0, 0.0].map(|x| x as f32)
+        let cells: Vec<Cell> = (0..rows * rows)
+            .into_par_iter()
+            .map(|n| {
+                let place = DVec2::new((n / rows) as f64 - middle, (n % rows) as f64 - middle);
+                waves.facets.at_angles(place * steps)
+            })
+            .collect();
+        let density = |n: Option<usize>| n.and_then(|n| cells.get(n)).map_or(0.0, |cell| cell.density);
+        let packets = cells.iter().enumerate().flat_map(|(n, Cell { density: d, mean, variance })| {
+            let [bend_u, bend_c] =
+                [rows, 1].map(|m| density(n.checked_sub(m)) - 2.0 * d + density(Some(n + m)));
+            [*d, mean.x, mean.y, variance.x, variance.y, bend_u, bend_c, 0.0].map(|x| x as f32)
         });
         let (level, tilted) = waves.foam;
         Some(Table {
             rows: rows as u32,
             steps: steps.into(),
-            cells: cells.collect(),
+            cells: packets.collect(),
             sigma: waves.slopes.sigma.into(),
             foam: [level, tilted.x, tilted.y],
             average: self.water.parameters.average,

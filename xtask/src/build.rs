@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Instant, SystemTime};
 
-/// Each is `mitsuba-plugin/cpp/<name>.cpp` and becomes `plugins/<name>.so`.
+/// Each is `mitsuba-plugin/cpp/<name>.cpp` and becomes `plugins/<name>.impl.so`, which `load.cpp` as `plugins/<name>.so` opens.
 const PLUGINS: [&str; 2] = ["prob_water", "prob_water_surface"];
 
 /// As the wheels were compiled: the layout of Dr.Jit's arrays depends on the instruction set, and a plugin compiled
@@ -16,9 +16,10 @@ const PLUGINS: [&str; 2] = ["prob_water", "prob_water_surface"];
 const COMPILE: &str = "-std=c++17 -O3 -DNDEBUG -march=x86-64-v3 -fno-strict-aliasing -fno-math-errno \
                        -fvisibility=hidden -fPIC -shared -Wall -Wextra";
 
-/// Rust's symbols stay inside the plugin, and whatever is missing is said now, not when a scene is loaded.
+/// Rust's symbols stay inside the plugin; whatever is missing is said now, and what another Mitsuba lacks when the plugin is
+/// loaded, not in mid-frame.
 const LINK: &str =
-    "-lmitsuba -ldrjit-core -ldrjit-extra -lpthread -ldl -lm -Wl,--exclude-libs,ALL -Wl,-z,defs";
+    "-lmitsuba -ldrjit-core -ldrjit-extra -lpthread -ldl -lm -Wl,--exclude-libs,ALL -Wl,-z,defs -Wl,-z,now";
 
 /// Where the plugins go unless told otherwise; `mi.file_resolver().append` of it makes them loadable.
 pub fn default_out() -> PathBuf {
@@ -40,14 +41,14 @@ pub fn build_with(out: &Path, flags: &[&str]) -> Result<()> {
     let bridge =
         rust.out_dir.context("the build script of prob-water-mitsuba did not run")?.join("cxxbridge/include");
     let packages = site_packages()?;
+    let versions = [("MITSUBA", setup::version("mitsuba")?), ("DRJIT", setup::version("drjit")?)]
+        .map(|(name, version)| format!("-DPROB_WATER_{name}=\"{version}\""));
     let sources = util::root().join("mitsuba-plugin/cpp");
     let directory = out.join("plugins");
     util::create_dir(&directory)?;
     let newest_input = newest(&[&rust.library, &bridge, &sources, &setup::stamp()])?;
 
     for name in PLUGINS {
-        let library = directory.join(name).with_extension("so");
-        let partial = library.with_extension("so.part");
         let mut compiler = util::command(util::cxx()?);
         compiler.args(COMPILE.split_whitespace()).args(flags).arg("-I").arg(&sources).arg("-I").arg(&bridge);
         for include in
@@ -59,15 +60,22 @@ pub fn build_with(out: &Path, flags: &[&str]) -> Result<()> {
         compiler.arg("-idirafter").arg(sources.join("compat"));
         compiler.arg(sources.join(name).with_extension("cpp")).arg(&rust.library);
         compiler.arg("-L").arg(packages.join("mitsuba")).arg("-L").arg(packages.join("drjit"));
-        compiler.args(LINK.split_whitespace()).arg("-o").arg(&partial);
-        compile(&mut compiler, &partial, &library, newest_input)?;
+        compiler.args(LINK.split_whitespace());
+        compile(&mut compiler, &directory.join(name).with_extension("impl.so"), newest_input)?;
+
+        let mut loader = util::command(util::cxx()?);
+        loader.args(COMPILE.split_whitespace()).args(flags).args(&versions);
+        loader.arg(sources.join("load.cpp")).args(["-ldl", "-Wl,-z,defs", "-Wl,-z,now"]);
+        compile(&mut loader, &directory.join(name).with_extension("so"), newest_input)?;
     }
     println!("build: done in {}", util::seconds(start.elapsed()));
     Ok(())
 }
 
-/// Compiles one plugin unless it is newer than its inputs and was made by the same command.
-fn compile(compiler: &mut Command, partial: &Path, library: &Path, newest_input: SystemTime) -> Result<()> {
+/// Compiles one library unless it is newer than its inputs and was made by the same command.
+fn compile(compiler: &mut Command, library: &Path, newest_input: SystemTime) -> Result<()> {
+    let partial = library.with_extension("so.part");
+    compiler.arg("-o").arg(&partial);
     let stamp = library.with_extension("command");
     let words: Vec<_> = std::iter::once(compiler.get_program())
         .chain(compiler.get_args())
@@ -84,8 +92,8 @@ fn compile(compiler: &mut Command, partial: &Path, library: &Path, newest_input:
     let start = SystemTime::now();
     util::run(compiler, &format!("compiling {}", util::shown(library)))?;
     // Dated by the start, so that a source edited meanwhile is seen as newer.
-    File::options().append(true).open(partial)?.set_modified(start)?;
-    fs::rename(partial, library).with_context(|| format!("cannot write {}", library.display()))?;
+    File::options().append(true).open(&partial)?.set_modified(start)?;
+    fs::rename(&partial, library).with_context(|| format!("cannot write {}", library.display()))?;
     fs::write(&stamp, line).with_context(|| format!("cannot write {}", stamp.display()))
 }
 

@@ -5,6 +5,7 @@ mod bench;
 mod build;
 mod c_api;
 mod cargo;
+mod compat;
 mod errors;
 mod figures;
 mod fuzz;
@@ -29,13 +30,14 @@ The commands of prob-water, each run as `cargo xtask <command>`:
                     build the command and draw the report's figures into out/report/ (options of validation/figures.py)
   errors [--quick]  write docs/error-budget.md: every stage in float64 and float32 against 50 digits
   test              run every check: Rust, C, plugin, Python, style
-  verify            the long campaigns: more samples, the live peer, stress, fuzz and
-                    sanitize below, the tables docs/float32.md and docs/error-budget.md
+  verify            the long campaigns: more samples, the live peer, stress, fuzz, sanitize and
+                    compat below, the tables docs/float32.md and docs/error-budget.md
   stress [--count N] [--seconds S] [--seed K]
                     adversarial and random seas and directions against every lobe (1e9 evaluations unless told)
   fuzz [TARGET] [--seconds S]
                     coverage-guided fuzzing of toml, table, c_abi and csv, a minute each unless told
   sanitize          the C programs under valgrind and with sanitizers, the plugin with the address sanitizer
+  compat            load the plugin into other versions of Mitsuba (.venv-3.9.0, ...), which must refuse it
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench.py)
@@ -81,6 +83,7 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["stress", ..] => stress::stress(&arguments[1..])?,
         ["fuzz", ..] => fuzz::fuzz(&arguments[1..])?,
         ["sanitize"] => sanitize::sanitize()?,
+        ["compat"] => compat::compat()?,
         ["header"] => c_api::header(false)?,
         ["header", "--check"] => c_api::header(true)?,
         ["c-test"] => c_api::c_test()?,

@@ -9,15 +9,16 @@ use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::PathBuf;
 
-/// An environment and what is installed in it.
-struct Environment {
-    directory: &'static str,
-    requirements: &'static str,
+/// An environment and what pip is told to install in it: a file of requirements after `-r`, or packages.
+struct Environment<'a> {
+    directory: &'a str,
+    packages: &'a [&'a str],
 }
 
-const MAIN: Environment = Environment { directory: ".venv", requirements: "validation/requirements.txt" };
+const MAIN: Environment =
+    Environment { directory: ".venv", packages: &["-r", "validation/requirements.txt"] };
 const PEER: Environment =
-    Environment { directory: ".venv-peer", requirements: "validation/requirements-peer.txt" };
+    Environment { directory: ".venv-peer", packages: &["-r", "validation/requirements-peer.txt"] };
 
 /// Succeeds in a Python that the pinned packages support.
 const SUPPORTED: &str = "import sys; sys.exit(sys.version_info < (3, 11))";
@@ -35,6 +36,20 @@ pub fn peer() -> Result<()> {
     PEER.install()
 }
 
+/// Sets up `.venv-<version>` with this version of Mitsuba and nothing else; its interpreter.
+pub fn mitsuba(version: &str) -> Result<PathBuf> {
+    let (directory, package) = (format!(".venv-{version}"), format!("mitsuba=={version}"));
+    let environment = Environment { directory: &directory, packages: &[&package] };
+    environment.install()?;
+    Ok(environment.python())
+}
+
+/// The version of a package in `.venv`.
+pub fn version(package: &str) -> Result<String> {
+    let code = format!("import importlib.metadata; print(importlib.metadata.version('{package}'))");
+    util::output(util::command(python()).args(["-c", &code]), "asking for a version")
+}
+
 /// The interpreter of `.venv`.
 pub fn python() -> PathBuf {
     MAIN.python()
@@ -45,7 +60,7 @@ pub fn stamp() -> PathBuf {
     MAIN.stamp()
 }
 
-impl Environment {
+impl Environment<'_> {
     fn python(&self) -> PathBuf {
         util::root().join(self.directory).join("bin/python")
     }
@@ -55,8 +70,12 @@ impl Environment {
     }
 
     fn install(&self) -> Result<()> {
-        let wanted = fs::read_to_string(util::root().join(self.requirements))
-            .with_context(|| format!("cannot read {}", self.requirements))?;
+        let named = self.packages.join(" ");
+        let wanted = match self.packages {
+            ["-r", file] => fs::read_to_string(util::root().join(file)),
+            _ => Ok(named.clone()),
+        }
+        .with_context(|| format!("cannot read {named}"))?;
         if self.python().exists() && fs::read_to_string(self.stamp()).is_ok_and(|found| found == wanted) {
             println!("setup: {} is up to date", self.directory);
             return Ok(());
@@ -65,13 +84,13 @@ impl Environment {
         if !self.is_usable() {
             self.create()?;
         }
-        println!("setup: installing {} (a few minutes the first time)", self.requirements);
+        println!("setup: installing {named} (a few minutes the first time)");
         // Wheels only: a package that has none for this Python is said at once, instead of half an hour of compiling.
         util::run(
             util::command(self.python())
                 .args(["-m", "pip", "install", "--quiet", "--only-binary", ":all:"])
-                .args(["-r", self.requirements]),
-            &format!("pip install -r {} in {}", self.requirements, self.directory),
+                .args(self.packages),
+            &format!("pip install {named} in {}", self.directory),
         )?;
         fs::write(self.stamp(), wanted)
             .with_context(|| format!("cannot write {}", self.stamp().display()))?;

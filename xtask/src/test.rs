@@ -2,7 +2,7 @@
 //!
 //! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
 
-use crate::{build, c_api, errors, figures, fuzz, sanitize, setup, stress, util};
+use crate::{build, c_api, compat, errors, figures, fuzz, sanitize, setup, stress, util};
 use anyhow::{Result, bail};
 use std::time::{Duration, Instant};
 
@@ -88,8 +88,8 @@ fn run_pytest(options: &[&str]) -> Result<()> {
 }
 
 /// The campaigns that are too long for every change: the whole of the stress campaign, fuzzing and memory checkers; ray
-/// casting and exact statistics against draws, the Python checks with many more samples and the live peer, and the error
-/// table of docs/float32.md.
+/// casting and exact statistics against draws, the Python checks with many more samples and the live peer, other versions of
+/// Mitsuba, and the error table of docs/float32.md.
 pub fn verify() -> Result<()> {
     let ignored = [
         "test",
@@ -108,7 +108,7 @@ pub fn verify() -> Result<()> {
     fuzz::fuzz(&[])?;
     c_api::c_test()?;
     sanitize::sanitize()?;
-    build::build(&build::default_out())?;
+    compat::compat()?;
     setup::peer()?;
     run_pytest(&["--full", "-s"])?;
     util::run(
