@@ -84,8 +84,9 @@ fn integrals(scenario: &Scenario, exact: &Exact, mut tables: Tables) -> Outcome 
     tables.end()
 }
 
-/// The largest relative error for which integrals stand in for draws.
+/// The largest errors with which integrals stand in for draws: relative of a mean, and in probability.
 const SMALL_ERROR: f64 = 0.02;
+const SMALL_SHARE_ERROR: f64 = 0.05;
 
 /// Integrals for the observers whom they serve, draws for the others.
 fn best(scenario: &Scenario, exact: Option<&Exact>, ensemble: &Ensemble, mut tables: Tables) -> Outcome {
@@ -94,7 +95,9 @@ fn best(scenario: &Scenario, exact: Option<&Exact>, ensemble: &Ensemble, mut tab
         let limits = &scenario.limits;
         let exact = exact.map_or(vec![], |exact| exact.statistics(engagement, limits));
         let serves = |observer: usize| {
-            exact.get(observer).is_some_and(|s| s.mean_error.max(s.share_error) <= SMALL_ERROR)
+            exact
+                .get(observer)
+                .is_some_and(|s| s.mean_error <= SMALL_ERROR && s.share_error <= SMALL_SHARE_ERROR)
         };
         let others = engagement.with_observers(|observer| !serves(observer));
         let samples = match others.observers() {

@@ -514,8 +514,10 @@ fn quantiles_by_the_table() {
         .configure()
         .unwrap();
         let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
-        let views: Vec<_> =
-            [0.0, 20.0, 40.0, 60.0, 75.0, 80.0, 85.0].iter().map(|a: &f64| [a.to_radians().sin(), 0.0, a.to_radians().cos()]).collect();
+        let views: Vec<_> = [0.0, 20.0, 40.0, 60.0, 75.0, 80.0, 85.0]
+            .iter()
+            .map(|a: &f64| [a.to_radians().sin(), 0.0, a.to_radians().cos()])
+            .collect();
         let engagement = Engagement::far(incidence, 10e3, &views, 1e5).unwrap();
         let samples =
             Ensemble::new(&water).unwrap().sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();

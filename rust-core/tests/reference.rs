@@ -131,7 +131,7 @@ fn facets_as_printed() {
             ..water(r[0], r[2], r[3], 0.0)
         };
         let [i, o, n] = [6, 9, 12].map(|k| [r[k], r[k + 1], r[k + 2]]);
-        let f = |parameters: Parameters| parameters.configure().unwrap().lobe.eval(i, o, n);
+        let f = |parameters: Parameters| parameters.configure().unwrap().local_lobe().eval(i, o, n);
         close(f(printed), r[15]);
         kinds[2 * r[4] as usize + r[5] as usize] += 1;
         tilted += usize::from(n[2] < 1.0);

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 fn sea(w: f64, footprint: f64, components: u32) -> Water {
     water(w, |p| {
         p.surface = Surface::Instance;
-        p.footprint = footprint;
+        p.footprint = Some(footprint);
         p.components = components;
         p.whitecaps = true;
     })
@@ -81,7 +81,7 @@ fn whitecaps_follow_the_footprint() {
 fn under_a_beam(times: &[f64], presence: Presence, instances: u64) -> Samples {
     let mut water = sea(56.0, 0.15, 5);
     water.parameters.instances = instances;
-    let ensemble = Ensemble { presence, ..Ensemble::new(&water) };
+    let ensemble = Ensemble { presence, ..Ensemble::new(&water).unwrap() };
     let beam = |time: &f64| {
         Engagement::new(*time, [0.0, 0.0, 1e3], Aim::Target([0.0; 3]), &[[0.0, 0.0, 1e3]]).unwrap()
     };
@@ -97,9 +97,9 @@ fn one_random_number_serves_an_instance_at_all_times() {
     // The lowest probability with a whitecap and the highest without, of every instance; and how often each was seen.
     let (mut lowest, mut highest, mut seen) = (vec![1.0f64; 2000], vec![0.0f64; 2000], [0, 0]);
     for time in 0..times.len() {
-        for ((i, hit, _), (_, same, _)) in drawn.of(time, 0).zip(expected.of(time, 0)) {
+        for (drawn, expected) in drawn.of(time, 0).unwrap().zip(expected.of(time, 0).unwrap()) {
+            let (i, hit, same) = (drawn.instance as usize, drawn.hit, expected.hit);
             assert_eq!(hit.position, same.position);
-            let i = i as usize;
             if hit.whitecap == 1.0 {
                 lowest[i] = lowest[i].min(same.whitecap);
                 seen[0] += usize::from(same.whitecap < 1.0);
@@ -121,7 +121,7 @@ fn whitecaps_do_not_last() {
     let times = [0.0, 0.1, 0.2, 0.5, 1.0];
     let [drawn, expected] = [Presence::Drawn, Presence::Expected].map(|p| under_a_beam(&times, p, 100_000));
     let at = |samples: &Samples, time: usize| -> Vec<f64> {
-        samples.of(time, 0).map(|(_, hit, _)| hit.whitecap).collect()
+        samples.of(time, 0).unwrap().map(|s| s.hit.whitecap).collect()
     };
     let (first, chance) = (at(&drawn, 0), at(&expected, 0));
     for (time, pin) in [(1, 0.415f64), (2, 0.134), (3, 0.092), (4, 0.032)] {

@@ -26,7 +26,7 @@ impl Scenario {
 
     /// Both streams of a run.
     fn output(&self, flags: &str) -> std::process::Output {
-        let output = run(&format!("scenario {} {flags}", self.path("sea.toml").display()), "");
+        let output = crate::run(&format!("scenario {} {flags}", self.path("sea.toml").display()), "");
         assert!(output.status.success());
         output
     }
