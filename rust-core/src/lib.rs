@@ -33,6 +33,8 @@
 //! | [`sampling`] | importance sampling of the two lobes |
 //! | [`scenario`] | 28: lasers, beams and observers |
 //! | [`ensemble`] | section 7: statistics over drawn surfaces |
+//! | [`Proposal`] | draws by importance, for narrow facets |
+//! | [`statistics`] | mean, spread, quantiles, and how far to trust them |
 //! | [`exact`] | the same for infinitely many, without draws |
 //! | [`planes`] | 80-89: in the plane of incidence and across it |
 //! | [`empirical`] | section 9: what the empirical model holds, from the full one |

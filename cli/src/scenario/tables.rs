@@ -238,7 +238,7 @@ impl Tables {
         self.few.say(
             self.rows,
             "rest on fewer than 10 effective draws (column effective)",
-            "their mean and sem are not settled, and mean_upper is all that is known; take more instances",
+            "their mean and sem are not settled, and mean_upper is all that is known; take draws = auto or more instances",
         );
         self.wrong.say(
             self.rows,

@@ -274,7 +274,7 @@ fn no_false_zero_of_narrow_facets() {
     assert_eq!(
         String::from_utf8(output.stderr).unwrap(),
         "prob-water: warning: 2 of 2 rows rest on fewer than 10 effective draws (column effective), the first at time 0, \
-         observer 0: their mean and sem are not settled, and mean_upper is all that is known; take more instances\n"
+         observer 0: their mean and sem are not settled, and mean_upper is all that is known; take draws = auto or more instances\n"
     );
     // Draws by importance, the default where facets are narrow, and integrals agree.
     let drawn = Scenario::new(NARROW).run("--instances 4000");
@@ -309,7 +309,7 @@ observers = [[5000, 0, 120], [5000, 0, 2800]]
     let text = String::from_utf8(output.stdout).unwrap();
     let [error, share] = ["mean_error", "share_error"].map(|name| floats(&text, name));
     assert!(
-        error[0] > 0.2 && error[0] < 1.0 && error[1] < 0.02 && share[0] > 0.05 && share[1] <= 0.02,
+        error[0] > 0.2 && error[0] < 1.0 && error[1] < 0.02 && share[0] > 0.05 && share[1] < 0.03,
         "{text}"
     );
     let said = String::from_utf8(output.stderr).unwrap();

@@ -8,7 +8,8 @@ use prob_water::cast::Path;
 use prob_water::scenario::FARTHEST;
 use prob_water::waves::Numbers;
 use prob_water::{
-    Aim, Draws, Engagement, Ensemble, Exact, InstanceLobe, Parameters, Presence, Statistics, Surface,
+    Aim, Draws, Engagement, Ensemble, Exact, InstanceLobe, Parameters, Presence, Proposal, Statistics,
+    Surface,
 };
 
 /// One drawn sea on a level surface, at places near and far.
@@ -97,7 +98,10 @@ pub fn statistics(draw: &mut Draw, tally: &mut Tally) {
     };
     let ensemble = Ensemble::new(&water).expect("the sea has drawn waves");
     let ensemble = if draw.flag() { ensemble.around(&engagement) } else { ensemble };
-    let ensemble = Ensemble { presence: draw.one_of(&[Presence::Drawn, Presence::Expected]), ..ensemble };
+    let few = sea.components < 4;
+    let proposal = if few { Proposal::Auto } else { draw.one_of(&[Proposal::Plain, Proposal::Slopes]) };
+    let presence = draw.one_of(&[Presence::Drawn, Presence::Expected]);
+    let ensemble = Ensemble { presence, proposal, ..ensemble };
     match ensemble.sample(std::slice::from_ref(&engagement), &|_| ()) {
         Ok(samples) => {
             for observer in 0..observers.len() {
@@ -127,12 +131,16 @@ fn exact(tally: &mut Tally, sea: &Parameters, engagement: &Engagement, told: imp
 /// Finite, not negative, shares at most 1; the extremes only where there are any.
 fn whole(s: &Statistics, extremes: bool) -> bool {
     let share = |x: f64| (0.0..=1.0).contains(&x);
-    let values = [s.mean, s.std, s.sem, s.mean_f_cos];
+    // A single draw has no standard error.
+    let sem = if s.sem.is_nan() { 0.0 } else { s.sem };
+    let values = [s.mean, s.std, sem, s.mean_f_cos, s.mean_upper, s.mean_error];
     values.into_iter().chain(s.quantiles).all(fine)
         && (!extremes || fine(s.min) && fine(s.max))
         && share(s.obscured)
         && share(s.whitecap)
-        && s.over.iter().all(|x| share(*x))
+        && s.over.iter().chain(&s.over_upper).all(|x| share(*x))
+        && share(s.share_error)
+        && s.mean_upper >= s.mean * (1.0 - 1e-9)
 }
 
 /// m; near the origin, in the distance, on a coordinate axis.
