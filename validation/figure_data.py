@@ -56,9 +56,7 @@ class Command:
 
     def run(self, *arguments: str, parameters: Case | None = None, text: str | None = None) -> Table:
         """The table a subcommand prints; `text` is its standard input."""
-        flags = [part for name, value in (parameters or {}).items()
-                 for part in (f"--{name.replace('_', '-')}", str(value))]
-        done = subprocess.run([self.path, *arguments, *flags], input=text, capture_output=True, text=True)
+        done = subprocess.run([self.path, *arguments, *flags(parameters or {})], input=text, capture_output=True, text=True)
         if done.returncode != 0:
             raise CommandError(done.stderr.strip())
         return parse(done.stdout)
@@ -83,6 +81,12 @@ class Command:
             file.write_text(toml(case, observers, instances, "drawn"))
             self.run("scenario", str(file), "--instances-out", str(rows))
             return parse(rows.read_text())
+
+
+def flags(parameters: Case) -> list[str]:
+    """Parameters as the command takes them."""
+    words = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in parameters.items()}
+    return [part for name, word in words.items() for part in (f"--{name.replace('_', '-')}", word)]
 
 
 def parse(text: str) -> Table:

@@ -7,30 +7,7 @@ import pytest
 
 from core import ROOT, Core, direction
 from mitsuba_setup import usable_llvm
-
-CPU_VARIANTS = [
-    "scalar_rgb", "scalar_spectral", "scalar_spectral_polarized", "llvm_ad_rgb", "llvm_ad_mono",
-    "llvm_ad_mono_polarized", "llvm_ad_spectral", "llvm_ad_spectral_polarized",
-]
-BOTH = ["scalar_rgb", "llvm_ad_rgb"]
-I, O = direction(40.0, 200.0), direction(35.0, 15.0)
-
-
-def interaction(mi, i=I):
-    si = mi.SurfaceInteraction3f() if mi.variant().startswith("scalar") else __import__("drjit").zeros(mi.SurfaceInteraction3f)
-    si.wi = mi.Vector3f([float(x) for x in i])
-    return si
-
-
-def value(mi, bsdf, context=None, i=I, o=O, **mask):
-    """f cos(theta_o) as one number."""
-    result = bsdf.eval(context or mi.BSDFContext(), interaction(mi, i), mi.Vector3f([float(x) for x in o]), **mask)
-    return float(np.array(result).ravel()[0])
-
-
-def number(x):
-    return float(np.array(x).ravel()[0])
-
+from plugin_calls import BOTH, CPU_VARIANTS, I, O, by_angle, interaction, number, value
 
 @pytest.mark.parametrize("variant", CPU_VARIANTS)
 def test_every_variant(use, variant):
@@ -209,18 +186,6 @@ def test_documented_snippets(use):
     assert len(vocabulary) > 10
     for name in vocabulary:
         assert re.search(rf"\* - .*\b{name}\b", text), name
-
-
-def by_angle(mi, bsdf):
-    """The value for a direction to the observer that an angle turns, as a function of it."""
-    import drjit as dr
-
-    def f(angle):
-        si = dr.zeros(mi.SurfaceInteraction3f)
-        si.wi = mi.Vector3f(I.tolist())
-        return bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(dr.sin(angle), 0.1, dr.sqrt(0.99 - dr.sin(angle) ** 2)))[0]
-
-    return f
 
 
 def test_gradients_flow_through_directions(use):

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from core import ROOT
-from test_behaviour import BOTH
+from plugin_calls import BOTH
 
 PLUGINS = ROOT / "target/mitsuba/plugins"
 LOAD = """

@@ -7,9 +7,7 @@ import pytest
 from bench_off import operations
 from core import ROOT, Core, direction
 from float32_errors import evaluate
-from test_behaviour import BOTH, CPU_VARIANTS, I, O, by_angle, interaction, number, value
-from test_lanes import draw
-from test_sampling import adapter
+from plugin_calls import BOTH, CPU_VARIANTS, I, O, adapter, by_angle, draw, interaction, number, value
 
 STANDARD = ROOT / "rust-core/data/table.npz"
 EMPIRICAL = {"type": "prob_water", "surface": "empirical"}

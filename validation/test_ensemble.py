@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from core import direction
-from figure_data import COMMAND
+from figure_data import COMMAND, flags
 from float32_errors import evaluate
-from test_lanes import draw
-from test_sampling import adapter
+from plugin_calls import adapter, draw, glints
 
 SEAS = [
     {"friction_velocity": 2.0},
@@ -26,26 +25,12 @@ SEAS = [
 SEA_NAMES = ["-".join(map(str, sea.values())) for sea in SEAS]
 
 
-def flags(sea):
-    """The sea as flags of the command."""
-    return [part for name, value in sea.items() for part in (f"--{name.replace('_', '-')}", str(value).lower())]
-
-
 def expected(sea, i, o):
     """f cos(theta_o) by the command."""
     rows = "\n".join(",".join(f"{x:.17g}" for x in (*a, *b)) for a, b in zip(i, o, strict=True))
     done = subprocess.run([COMMAND, "brdf", "--surface", "ensemble", *flags(sea)],
                           input="ix,iy,iz,ox,oy,oz\n" + rows + "\n", capture_output=True, text=True, check=True)
     return np.loadtxt(io.StringIO(done.stdout), delimiter=",", skiprows=1)[:, 6] * o[:, 2]
-
-
-def glints(rng, count):
-    """Pairs of directions whose half vectors lean up to 30 degrees, to 85 degrees from the vertical."""
-    h = direction(30 * np.sqrt(rng.random(8 * count)), rng.uniform(0, 360, 8 * count))
-    i = direction(rng.uniform(0, 85, 8 * count), rng.uniform(0, 360, 8 * count))
-    o = 2 * np.sum(i * h, axis=1, keepdims=True) * h - i
-    keep = np.flatnonzero(o[:, 2] > 0.087)[:count]
-    return [(v[keep] / np.linalg.norm(v[keep], axis=1, keepdims=True)).astype(np.float32) for v in (i, o)]
 
 
 @pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb"])

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from core import direction
-from figure_data import COMMAND
-from test_ensemble import flags
-from test_radiance import IRRADIANCE, scene, sun
+from figure_data import COMMAND, flags
+from float32_errors import evaluate
+from lit_water import IRRADIANCE, scene, sun
+from plugin_calls import adapter, draw, glints
 
 SEAS = [
     {"friction_velocity": 8.0},
@@ -100,10 +101,6 @@ def test_mean_over_places_is_the_ensemble(use):
 def test_a_footprint_texture_is_the_footprint(use, variant, wind):
     """A texture that says 0.3 m is footprint = 0.3; likewise for whitecaps."""
     mi, rng = use(variant), np.random.default_rng(4)
-    from float32_errors import evaluate
-
-    from test_ensemble import glints
-
     i, o = glints(rng, 300)
     uniform = {"type": "uniform", "value": 0.3}
     for textured, plain in [
@@ -161,17 +158,15 @@ def test_a_drawn_sea_keeps_its_slopes_under_a_texture(use, wind, allowed):
 @pytest.mark.parametrize("surface", ["flat", "instance"])
 def test_no_texture_value_breaks_anything(use, variant, value, surface):
     """What is no length is the smallest footprint, what is no probability lies within 0 and 1, in every variant."""
-    mi, rng = use(variant), np.random.default_rng(2)
+    mi = use(variant)
     i, o = (np.tile(direction(t, p), (5, 1)).astype(np.float32) for t, p in ((20.0, 0.0), (20.0, 180.0)))
     texture = {"type": "uniform", "value": value}
     for name in ("footprint", "whitecaps"):
-        found = places(mi, {"surface": surface, "wind_speed": 5.0, name: texture}, i, o, rng)
         wanted = {"footprint": 1e-6 if not value > 1 else 1e20, "whitecaps": 1.0 if value > 1 else 0.0}[name]
-        expected = places(mi, {"surface": surface, "wind_speed": 5.0, name: {"type": "uniform", "value": wanted}}, i, o,
-                          np.random.default_rng(2) if name == "footprint" else rng)
+        found, expected = (places(mi, {"surface": surface, "wind_speed": 5.0, name: given}, i, o, np.random.default_rng(2))
+                           for given in (texture, {"type": "uniform", "value": wanted}))
         assert np.isfinite(found).all() and (found >= 0).all()
-        if surface == "flat":
-            np.testing.assert_allclose(found, expected, rtol=1e-5)
+        np.testing.assert_allclose(found, expected, rtol=1e-5)
 
 
 @pytest.mark.parametrize("variant, integrator, pixel", [
@@ -205,8 +200,6 @@ def test_pixel_footprint(use, variant, integrator, pixel):
 @pytest.mark.parametrize("variant", ["scalar_rgb", "llvm_ad_rgb"])
 def test_nothing_from_below_the_horizon(use, variant):
     """Where the source is below the level surface there is neither value nor density, however the wave leans."""
-    from float32_errors import evaluate
-
     mi, rng = use(variant), np.random.default_rng(5)
     i = direction(rng.uniform(90.5, 105, 300), rng.uniform(0, 360, 300)).astype(np.float32)
     o = direction(rng.uniform(0, 60, 300), rng.uniform(0, 360, 300)).astype(np.float32)
@@ -220,10 +213,6 @@ def test_nothing_from_below_the_horizon(use, variant):
 def test_light_from_below(use, variant):
     """Diffuse, reciprocal, and the albedo of all stays below 1 for any reflectance."""
     mi, rng = use(variant), np.random.default_rng(6)
-    from float32_errors import evaluate
-
-    from test_lanes import draw
-
     below = {"water_leaving": {"type": "uniform", "value": 1.0}}
     for sea in ({"friction_velocity": 8.0}, {"friction_velocity": 56.0, "surface": "instance"}, {"friction_velocity": 0.0}):
         with_it, without = (mi.load_dict({"type": "prob_water", **sea, **p}) for p in (below, {}))
@@ -250,8 +239,6 @@ def test_chi_square(use):
     """Draws follow their density at a place of a drawn sea, and with light from below."""
     mi = use("llvm_ad_rgb")
     from mitsuba.chi2 import ChiSquareTest, SphericalDomain
-
-    from test_sampling import adapter
 
     for parameters in (
         {"surface": "instance", "friction_velocity": 24.0, "seed": 3},

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core import Core, direction
-from test_lanes import draw
+from plugin_calls import adapter, draw
 
 INCIDENCES = (0.0, 30.0, 60.0, 75.0, 85.0)
 CONFIGURATIONS = [
@@ -57,33 +57,6 @@ class TiltDomain:
         return 4 * dr.dot(self.i, h) * h.z**3 * scale[0] * scale[1]
 
 
-def interaction(mi, i, count):
-    """Interactions with the source in the direction `i` of a frame that is set."""
-    import drjit as dr
-
-    si = dr.zeros(mi.SurfaceInteraction3f, count)
-    si.wi = mi.Vector3f([float(x) for x in i])
-    si.sh_frame = mi.Frame3f([1, 0, 0], [0, 1, 0], [0, 0, 1])
-    return si
-
-
-def adapter(mi, parameters, i, context):
-    """`sample` and `pdf` as Mitsuba's chi-square test wants them. A draw counts where it has a density, be
-    its weight zero (Gram-Charlier's clamp) or not."""
-    import drjit as dr
-
-    bsdf = mi.load_dict({"type": "prob_water", **parameters})
-
-    def sample(u):
-        drawn, _ = bsdf.sample(context, interaction(mi, i, dr.width(u)), u[0], mi.Point2f(u[1], u[2]))
-        return drawn.wo, dr.select(drawn.pdf > 0, mi.Float(1), 0)
-
-    def pdf(o):
-        return bsdf.pdf(context, interaction(mi, i, dr.width(o)), o)
-
-    return sample, pdf
-
-
 @pytest.mark.parametrize("parameters", CONFIGURATIONS, ids=lambda p: "-".join(map(str, p.values())))
 @pytest.mark.parametrize("incidence", INCIDENCES)
 def test_chi_square(use, parameters, incidence):
@@ -117,6 +90,12 @@ def test_chi_square_on_the_sphere(use, component, wind, incidence):
     assert test.run(0.01, test_count=27, quiet=True), test.messages
 
 
+#: Bounds of weights by slope measure and Gram-Charlier: to Beaufort 6, beyond. Regression pins but for the first, a little
+#: above the largest of a million draws: 1.21, 2.01, 1.59 and 3.73, 2.46 and 14.85 (docs/model.md).
+WEIGHTS = {("slope", False): (1.23, 1.23), ("slope", True): (2.1, 2.1), ("angle", False): (1.7, 4.0),
+           ("angle", True): (3.0, 16.0)}
+
+
 def test_weights_are_bounded(use, full):
     """No fireflies at any angle or wind: the bounds of docs/model.md, in float32."""
     mi, rng = use("llvm_ad_rgb"), np.random.default_rng(8)
@@ -131,8 +110,6 @@ def test_weights_are_bounded(use, full):
         parameters = {"friction_velocity": wind, "slope_measure": measure, "gram_charlier": gram_charlier}
         _, weight = draw(mi, mi.load_dict({"type": "prob_water", **parameters, "whitecaps": False}), i, u)
         _, mixed = draw(mi, mi.load_dict({"type": "prob_water", **parameters}), i, u)
-        bound = {("slope", False): 1.23, ("slope", True): 2.1}.get((measure, gram_charlier))
-        if bound is None:
-            bound = (3.0 if gram_charlier else 1.7) if wind <= 63 else (16.0 if gram_charlier else 4.0)
+        bound = WEIGHTS[measure, gram_charlier][wind > 63]
         print(f"w* {wind:6.2f} {measure} Gram-Charlier {gram_charlier}: {weight.max():.3f}, with whitecaps {mixed.max():.3f}, bound {bound}")
-        assert weight.max() < bound and mixed.max() < bound
+        assert weight.max() < bound and mixed.max() < bound, "regression pin"

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from core import direction
-from figure_data import COMMAND
+from figure_data import COMMAND, flags
 from float32_errors import evaluate
-from test_behaviour import BOTH
-from test_ensemble import flags, glints
+from plugin_calls import BOTH, glints
 
 #: Surfaces that are not reciprocal.
 ONE_WAY = [

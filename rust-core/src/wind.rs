@@ -221,6 +221,7 @@ mod tests {
     #[test]
     fn inverse_is_exact_at_every_height() {
         for height in [0.1, 0.5, 2.0, 10.0, 12.5, 19.5, 100.0] {
+            let mut inverted = 0;
             for i in 1..400 {
                 let w = f64::from(i) * 0.59;
                 let speed = wind_speed(w, height);
@@ -228,8 +229,11 @@ mod tests {
                 if wind_speed(w * 1.001, height) > speed && speed > 0.0 {
                     let back = friction_velocity(speed, height).unwrap();
                     assert!((back / w - 1.0).abs() < 1e-12, "{w} at {height} m: {back}");
+                    inverted += 1;
                 }
             }
+            // At 0.1 m Eq. 1 has a maximum at w* = 175.
+            assert!(inverted > if height < 0.5 { 290 } else { 398 }, "{inverted} at {height} m");
         }
     }
 

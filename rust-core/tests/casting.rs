@@ -152,7 +152,8 @@ fn compare(seed: u64) -> Tally {
             }
             hit
         }
-        (Some(_), None) => return tally, // the origin is under water, and both say so
+        // The origin is under water, and both say so.
+        (Some(0.0), None) if entry == 0.0 => return tally,
         (d, hit) => panic!("seed {seed}: {hit:?} instead of {d:?}"),
     };
 
@@ -203,6 +204,8 @@ fn campaign(rays: u64) {
     println!("{tally:?}");
     assert!(tally.wrong == 0 && tally.wrong_obscured == 0 && tally.tangencies < 3 + rays as usize / 10_000);
     assert!(tally.obscured > rays as usize / 20);
+    // The report's march steps over the first crest now and then, which is why ours is another.
+    assert!((0.001..0.01).contains(&(tally.report_missed as f64 / rays as f64)), "{tally:?}");
 }
 
 #[test]

@@ -193,7 +193,6 @@ fn the_reports_mean_is_less_than_power() {
         let means = exact.means(&engagement)[0];
         let i = engagement.direction().map(|x| -x);
         let found = [power.eval(i, o) / report.eval(i, o), means.f_cos / (means.f * o[2])];
-        println!("view {view}: {found:.4?}");
         assert!(found.iter().all(|ratio| (ratio - expected).abs() < 0.005), "{view}: {found:?}");
     }
 }

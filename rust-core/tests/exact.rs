@@ -231,7 +231,8 @@ fn with_obscuration_everywhere() {
     campaign(seas, |w, d, m, i| compare_with_the_ray_cast(&with_instances(sea(w, d, m), 200_000), i));
 }
 
-/// How far off obscuration by Smith's share is for low forward views: printed, for the documentation.
+/// How far off obscuration by Smith's share is for low forward views: 2 % to 70 degrees; below, a regression pin of 25 %, of
+/// 21 % measured. The table is that of docs/model.md.
 #[test]
 #[ignore = "long: `cargo xtask verify` runs it"]
 fn low_views() {
@@ -251,6 +252,8 @@ fn low_views() {
                 let off = 100.0 * (exact.mean / drawn.mean - 1.0);
                 let error = 100.0 * drawn.sem / drawn.mean;
                 print!("  {off:+.1} +- {error:.1} ({:.3} {:.3})", exact.obscured, drawn.obscured);
+                let allowed = if angles[o] <= 70.0 { 2.0 } else { 25.0 };
+                assert!(off.abs() < allowed + 4.0 * error, "w* {w} theta_i {incidence} {}: {off}", angles[o]);
             }
             println!();
         }
@@ -294,7 +297,7 @@ fn distributions() {
         let samples =
             Ensemble::new(&water).unwrap().sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
         let n = samples.instances() as f64;
-        let mut worst = 0.0f64;
+        let (mut worst, mut compared) = (0.0f64, 0);
         for (o, exact) in exact.iter().enumerate() {
             // From just below each quantile and above it: a whitecap's f is a lump, and so is 0.
             let below = |q: f64| if q > 0.0 { q * (1.0 - 1e-9) } else { -1.0 };
@@ -309,6 +312,7 @@ fn distributions() {
                 // Where waves hardly tilt the surface all f are alike.
                 let alike = (exact.quantiles[q] / drawn.quantiles[q] - 1.0).abs() < 1e-3;
                 if drawn.std > 0.0 && !alike {
+                    compared += 1;
                     worst = worst.max(off);
                     assert!(off < 0.006 + 4.0 * error, "{name} {o} {level}: {:?}", &over[..2]);
                 }
@@ -336,11 +340,15 @@ fn distributions() {
                 exact.quantiles[0] > 0.999 * half || half == water.local_lobe().whitecap_brdf || half == 0.0;
             assert!(lump || (again - 0.5).abs() < 0.01, "{name} {o}: {again}");
         }
-        println!("{name}: probabilities off by at most {worst:.4}, whitecaps {:.4}", exact[0].whitecap);
+        // In the others waves hardly tilt the surface: all f are alike.
+        assert_eq!(compared > 0, !["hurricane", "calm", "next to calm"].contains(&name), "{name}");
+        println!(
+            "{name}: {compared} probabilities off by at most {worst:.4}, whitecaps {:.4}",
+            exact[0].whitecap
+        );
     }
 }
 
-/// What would need tables without end is refused, in no time.
 /// A share is at most 1, also where sums of probabilities are more by rounding.
 #[test]
 fn shares_are_at_most_one() {
@@ -356,16 +364,15 @@ fn shares_are_at_most_one() {
     }
 }
 
+/// Seas whose tables would have no end are refused, in no time, by the parameter that is to blame.
 #[test]
 fn far_finer_facets_are_refused() {
+    let refused =
+        |w, footprint, components| Exact::new(&sea(w, footprint, components)).unwrap_err().parameters();
     for (w, footprint) in [(238.0, 1e-3), (100.0, 1e-3), (150.0, 1e-6), (1.0, 1e-4)] {
-        match Exact::new(&sea(w, footprint, 5)) {
-            Err(error) => assert!(error.to_string().contains("footprint"), "{error}"),
-            Ok(_) => println!("w* {w} D {footprint} is no trouble"),
-        }
+        assert_eq!(refused(w, footprint, 5), ["footprint"], "w* {w} D {footprint}");
     }
-    assert!(Exact::new(&sea(238.0, 1e-3, 5)).is_err());
-    assert!(Exact::new(&sea(8.0, 0.15, 3)).is_err());
+    assert_eq!(refused(8.0, 0.15, 3), ["components"]);
 }
 
 /// What an exact statistic says of its own error covers it: against ray casts, views to 2 degrees above the horizon and

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{HURRICANES, UP, WINDS, direction, dot, integrate, water};
+use common::{HURRICANES, UP, WINDS, direction, dot, integrate, water, worse};
 use prob_water::{Lobe, SlopeMeasure};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
@@ -92,12 +92,11 @@ fn a_draw_reports_its_density_and_value() {
     assert!(drawn > 18_000);
 }
 
-/// Weights f cos/pdf never pass a stated bound: 1.7 to Beaufort 6 without Gram-Charlier, near the
-/// 1.22 of the proposal (1.23 for slopes); 3 with it; more only where tilt angles of a hurricane stand upright.
+/// Weights f cos/pdf stay below bounds. The proposal has one of its own, 1.22 for a Gaussian of slopes; the others are
+/// regression pins, a little above the largest of a million draws (docs/model.md) and no better founded than that.
 #[test]
 fn weights_are_bounded() {
     let mut rng = StdRng::seed_from_u64(9);
-    println!("   w*  measure Gram-Charlier  worst weight  bound");
     for w in WINDS.into_iter().chain(HURRICANES) {
         for slope_measure in [SlopeMeasure::Slope, SlopeMeasure::Angle] {
             for gram_charlier in [false, true] {
@@ -106,13 +105,14 @@ fn weights_are_bounded() {
                     p.gram_charlier = gram_charlier;
                 })
                 .local_lobe();
-                let bound = match (slope_measure, gram_charlier) {
-                    (SlopeMeasure::Slope, false) => 1.23,
-                    (SlopeMeasure::Slope, true) => 2.1,
-                    (SlopeMeasure::Angle, false) if w <= 63.0 => 1.7,
-                    (SlopeMeasure::Angle, true) if w <= 63.0 => 3.0,
-                    (SlopeMeasure::Angle, false) => 4.0,
-                    (SlopeMeasure::Angle, true) => 16.0,
+                let report = w <= 63.0;
+                let (measured, bound) = match (slope_measure, gram_charlier) {
+                    (SlopeMeasure::Slope, false) => (1.21, 1.23),
+                    (SlopeMeasure::Slope, true) => (2.01, 2.1),
+                    (SlopeMeasure::Angle, false) if report => (1.59, 1.7),
+                    (SlopeMeasure::Angle, true) if report => (2.46, 3.0),
+                    (SlopeMeasure::Angle, false) => (3.73, 4.0),
+                    (SlopeMeasure::Angle, true) => (14.85, 16.0),
                 };
                 let mut worst = 0.0f64;
                 for _ in 0..60_000 {
@@ -125,11 +125,16 @@ fn weights_are_bounded() {
                     let i = direction(theta, 360.0 * rng.random::<f64>());
                     let s = lobe.sample(i, UP, [rng.random(), rng.random(), rng.random()]);
                     if s.pdf > 0.0 {
-                        worst = worst.max(s.f * s.direction[2] / s.pdf);
+                        worst = worse(worst, s.f * s.direction[2] / s.pdf);
                     }
                 }
                 println!("{w:7.2} {slope_measure:?} {gram_charlier:5} {worst:8.3} {bound:6.2}");
-                assert!(worst < bound, "w* {w} {slope_measure:?} Gram-Charlier {gram_charlier}: {worst}");
+                assert!(
+                    worst < bound,
+                    "regression pin {bound}, of {measured} measured: {worst} at w* {w} {slope_measure:?} Gram-Charlier {gram_charlier}"
+                );
+                // Near the horizon water reflects nearly everything: no cell's largest weight is much below 1.
+                assert!(worst > 0.9, "{worst}");
             }
         }
     }

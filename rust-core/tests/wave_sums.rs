@@ -126,6 +126,5 @@ fn phases_keep_their_digits() {
             worst = [0, 1].map(|m| worse(worst[m], errors[m].abs()));
         }
     }
-    println!("phase error, rad: {:.1e} in float64, {:.1e} in lanes", worst[0], worst[1]);
     assert!(worst[0] < 1e-8 && worst[1] < 1e-6, "{worst:?}");
 }

@@ -78,8 +78,7 @@ fn variances_of_height_and_slope() {
                 ["height", "upwind", "crosswind"].iter().zip(found.iter().zip(expected))
             {
                 let off = found / expected - 1.0;
-                println!("w* {w} D {footprint} M {components} {draws:?} {name}: {:+.2} %", 100.0 * off);
-                assert!(off.abs() < 0.01, "{name}: {found} against {expected}");
+                assert!(off.abs() < 0.01, "w* {w} {draws:?} {name}: {found} against {expected}");
             }
         }
     }
@@ -97,7 +96,6 @@ fn variance_is_shared_between_waves_and_facets() {
             let all = slopes::variances(&water.wind, f64::INFINITY);
             shares.push((u + c + water.variances[0] + water.variances[1]) / (all[0] + all[1]));
         }
-        println!("w* {w}: {shares:.3?}");
         assert!(shares.iter().all(|s| (1.0..1.25).contains(s)), "w* {w}: {shares:?}");
         let (low, high) = shares.iter().fold((f64::MAX, 0.0f64), |(l, h), s| (l.min(*s), h.max(*s)));
         assert!(high - low < 0.1, "w* {w}: {shares:?}");

@@ -22,8 +22,7 @@ fn reproduces_the_reference_vectors() {
         tilted += usize::from(row[12] != "1");
         lit += usize::from(float(found) > 0.0);
     }
-    println!("{seen} rows, {tilted} of them tilted, {lit} of them lit");
-    assert!(seen >= 12 && tilted > 3 && tilted < seen && lit > 6);
+    assert!(seen >= 12 && tilted > 3 && tilted < seen && lit > 6, "{seen} {tilted} {lit}");
 }
 
 #[test]

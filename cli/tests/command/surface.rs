@@ -78,7 +78,15 @@ fn whitecaps_may_be_left_out() {
     let whitecaps = |flags: &str| {
         floats(&succeed(&format!("surface --grid 40,1,3 --wind-speed 25 {flags}"), ""), "whitecap")
     };
-    assert!(whitecaps("").iter().any(|p| *p > 0.0));
+    let found = whitecaps("");
+    // Eq. 53 of the acceleration beside it.
+    let accelerations = floats(&succeed("surface --grid 40,1,3 --wind-speed 25", ""), "acceleration");
+    let wind = prob_water::Wind::Speed { speed: 25.0, height: 10.0 }.profile().unwrap();
+    for (p, acceleration) in found.iter().zip(&accelerations) {
+        let expected = prob_water::whitecap::probability(wind.friction_velocity, 100.0 * acceleration);
+        assert!((p - expected).abs() < 1e-12, "{p} {expected}");
+    }
+    assert!(found.len() == 40 && found.iter().any(|p| *p > 0.0) && found.contains(&0.0));
     assert_eq!(whitecaps("--whitecaps false"), [0.0; 40]);
 }
 

@@ -150,20 +150,6 @@ fn flags_reach_the_table() {
 }
 
 #[test]
-fn numpy_reads_it_in_one_line() {
-    let python = concat!(env!("CARGO_MANIFEST_DIR"), "/../.venv/bin/python");
-    if !Path::new(python).exists() {
-        println!("skipped: there is no .venv with NumPy");
-        return;
-    }
-    let tables = Tables::new();
-    tables.build("table.npz", SMALL);
-    let line = "import numpy; t = numpy.load('table.npz'); print(t['mean'].shape, t['footprint'])";
-    let output = Command::new(python).args(["-c", line]).current_dir(&tables.0).output().unwrap();
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), "(3, 2, 3, 3, 17) [0.1 0.2]\n");
-}
-
-#[test]
 fn slices_are_the_librarys() {
     let tables = Tables::new();
     tables.build("table.npz", SMALL);
