@@ -1,6 +1,8 @@
 """The plugin beside Mitsuba's own BSDFs: errors, parameters, components, masks, variants, documentation."""
 
 import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -52,7 +54,11 @@ def test_variants_are_all_tested_or_need_a_gpu():
         ({"waves": 3.0}, ["waves", "3"]),
         ({"whitecaps": "maybe"}, ["whitecaps", "maybe"]),
         ({"fresnel": 2.0}, ["fresnel", "2"]),
-        ({"wavelength": {"type": "uniform", "value": 0.5}}, ["wavelength"]),
+        ({"wavelength": {"type": "uniform", "value": 0.5}}, ["wavelength", "an object or an array", "a plain number"]),
+        ({"water_leaving": 50.0}, ["water_leaving = 50 is out of range", "0 to 1"]),
+        ({"water_leaving": -1.0}, ["water_leaving = -1 is out of range", "0 to 1"]),
+        ({"water_leaving": {"type": "uniform", "value": 1.5}}, ["water_leaving = 1.5 is out of range"]),
+        ({"water_leaving": float("nan")}, ["water_leaving = nan is out of range"]),
     ],
     ids=lambda p: "-".join(p) if isinstance(p, dict) else "",
 )
@@ -159,6 +165,122 @@ def test_traverse(use, variant):
     parameters.update()
     assert value(mi, bsdf) != before
     assert "footprint = 0.15" in str(bsdf) and str(bsdf).startswith("ProbWater[")
+
+
+def test_what_traced_variants_cannot_take(use):
+    """Arrays of Dr.Jit where a number is meant, and the pixel's footprint without its angle: they have no ray differentials."""
+    mi = use("llvm_ad_rgb")
+    with pytest.raises(RuntimeError, match="wind_speed is an object or an array: allowed is a plain number"):
+        mi.load_dict({"type": "prob_water", "wind_speed": mi.Float(5)})
+    with pytest.raises(RuntimeError, match="footprint = pixel needs pixel_angle here"):
+        mi.load_dict({"type": "prob_water", "footprint": "pixel"})
+    mi.load_dict({"type": "prob_water", "footprint": "pixel", "pixel_angle": 0.05})
+    use("scalar_rgb")
+    mi.load_dict({"type": "prob_water", "footprint": "pixel"})
+
+
+@pytest.mark.parametrize("variant", CPU_VARIANTS)
+def test_water_leaving_is_a_share(use, variant):
+    """An update beyond 0 and 1 is refused and leaves what was; a texture is held within."""
+    mi = use(variant)
+    bsdf = mi.load_dict({"type": "prob_water", "water_leaving": 0.25})
+    parameters, key = mi.traverse(bsdf), "water_leaving.value"
+    before = value(mi, bsdf)
+    for refused in (50.0, -1.0, float("nan")):
+        parameters[key] = refused
+        with pytest.raises(RuntimeError, match=f"water_leaving = {refused:g} is out of range: allowed is 0 to 1"):
+            parameters.update()
+        assert number(parameters[key]) == 0.25 and value(mi, bsdf) == before
+    parameters[key] = 1.0
+    parameters.update()
+    assert number(parameters[key]) == 1.0 and value(mi, bsdf) > before
+    texture = {"type": "bitmap", "raw": True, "filter_type": "nearest"}
+    held = [mi.load_dict({"type": "prob_water", "water_leaving": {**texture, "bitmap": mi.Bitmap(np.full((2, 2, 1), x, np.float32))}})
+            for x in (7.0, 1.0)]
+    assert value(mi, held[0]) == value(mi, held[1]) > before
+    if variant.endswith("_rgb"):
+        bsdf = mi.load_dict({"type": "prob_water", "water_leaving": {"type": "rgb", "value": [0.1, 0.2, 0.3]}})
+        parameters, before = mi.traverse(bsdf), value(mi, bsdf)
+        parameters[key] = mi.Color3f(0.1, 3.0, 0.2)
+        with pytest.raises(RuntimeError, match="water_leaving = 3 is out of range"):
+            parameters.update()
+        assert value(mi, bsdf) == before and np.allclose(np.array(parameters[key]).ravel(), [0.1, 0.2, 0.3])
+
+
+@pytest.mark.parametrize("variant", CPU_VARIANTS)
+def test_attributes(use, variant):
+    """Numbers and textures that traverse() shows are attributes with their values, before and after a change."""
+    mi = use(variant)
+    numbers = {"wind_speed": 7.0, "wind_height": 12.5, "wind_direction": 30.0, "wavelength": 0.6, "ior": 1.35, "time": 2.5,
+               "footprint": 0.25}
+    bsdf = mi.load_dict({"type": "prob_water", "surface": "instance", **numbers})
+    parameters = mi.traverse(bsdf)
+    assert set(parameters.keys()) == set(numbers)
+    parameters["wind_speed"] = numbers["wind_speed"] = 9.0
+    parameters.update()
+    for one in ({"friction_velocity": 24.0}, {"beaufort": 5}):
+        numbers |= one
+    others = [mi.load_dict({"type": "prob_water", **one}) for one in ({"friction_velocity": 24.0}, {"beaufort": 5})]
+    for name, wanted in numbers.items():
+        holder = {"friction_velocity": others[0], "beaufort": others[1]}.get(name, bsdf)
+        assert np.all(holder.has_attribute(name))
+        for call in ("eval_attribute", "eval_attribute_1", "eval_attribute_3"):
+            found = np.array(getattr(holder, call)(name, interaction(mi))).ravel()
+            assert found.size and np.allclose(found, wanted, rtol=1e-6), (name, call, found)
+    textures = {"footprint": 0.3, "whitecaps": 0.1, "water_leaving": 0.02}
+    bsdf = mi.load_dict({"type": "prob_water", **{name: {"type": "uniform", "value": x} for name, x in textures.items()}})
+    for name, wanted in textures.items():
+        assert np.all(bsdf.has_attribute(name)) and np.isclose(number(bsdf.eval_attribute_1(name, interaction(mi))), wanted)
+    assert not np.any(bsdf.has_attribute("ior"))
+
+
+@pytest.mark.parametrize("variant, surface", [("scalar_rgb", "ensemble"), *(("llvm_ad_rgb", surface) for surface in (
+    "ensemble", "empirical", "instance", "flat"))])
+def test_memory_stays(use, variant, surface, full):
+    """Further loads and updates take no more memory than the first did, though nothing is rendered in between."""
+    use(variant)
+    counts = ["20", "100"] if full else ["8", "24"]
+    done = subprocess.run([sys.executable, "-c", MEMORY, variant, surface, *counts], capture_output=True, text=True,
+                          cwd=ROOT / "validation")
+    assert done.returncode == 0, done.stderr
+    loads, updates = map(float, done.stdout.split())
+    print(f"\n{variant} {surface}: {loads:.1f} MiB more by loads, {updates:.1f} by updates")
+    # The tables of one sea are 4 MiB at most.
+    assert loads < 12 and updates < 12
+
+
+MEMORY = """
+import sys
+import mitsuba as mi
+from mitsuba_setup import load_plugin
+
+variant, surface = sys.argv[1:3]
+first, more = map(int, sys.argv[3:])
+mi.set_variant(variant)
+load_plugin()
+
+def grown(step):
+    def resident():
+        return int(open("/proc/self/statm").read().split()[1]) * 4096 / 2**20
+    for k in range(first):
+        step(k)
+    before = resident()
+    for k in range(more):
+        step(k)
+    return resident() - before
+
+bsdf = mi.load_dict({"type": "prob_water", "surface": surface, "water_leaving": 0.02})
+parameters = mi.traverse(bsdf)
+
+def load(k):
+    mi.load_dict({"type": "prob_water", "surface": surface, "wind_direction": k + 0.5})
+
+def update(k):
+    parameters["wind_direction"] = k + 0.5
+    parameters.update()
+
+print(grown(load), grown(update))
+"""
 
 
 @pytest.mark.parametrize("variant", BOTH)

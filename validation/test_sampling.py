@@ -75,6 +75,30 @@ def test_chi_square(use, parameters, incidence):
     assert test.run(0.01, test_count=len(CONFIGURATIONS) * len(INCIDENCES), quiet=True), test.messages
 
 
+@pytest.mark.parametrize("footprint, floor", [(float("inf"), 1), (0.001, 2)])
+@pytest.mark.parametrize("measure", ["angle", "slope"])
+def test_density_is_normalised_in_a_calm(use, measure, footprint, floor):
+    """Over a grid in tilts, which resolves standard deviations of 0.001, the density has the integral that draws have: 1 less
+    the draws that are lost below the horizon."""
+    mi = use("llvm_ad_rgb")
+    parameters = {"friction_velocity": 0.0, "slope_measure": measure, "footprint": footprint, "whitecaps": False}
+    core = Core(**parameters)
+    assert sum(abs(v - 1e-6) < 1e-12 for v in (core.sigma_u2, core.sigma_c2)) == floor
+    steps, draws = 2000, 1_000_000
+    x = ((np.arange(steps) + 0.5) / steps * 2 - 1).astype(np.float32)
+    grid = mi.Point2f(*(v.ravel() for v in np.meshgrid(x, x)))
+    u = mi.Point3f(np.random.default_rng(2).random((3, draws)).astype(np.float32))
+    for incidence in INCIDENCES:
+        i = direction(incidence, 70.0)
+        domain = TiltDomain(mi, i, core, 0.0)
+        sample, pdf = adapter(mi, parameters, i, mi.BSDFContext())
+        o = domain.map_forward(grid)
+        density = np.array(pdf(o) * domain.jacobian(o), dtype=np.float64).sum() * 4 / steps**2
+        drawn = np.array(sample(u)[1]).mean(dtype=np.float64)
+        print(f"\n{measure} D {footprint} {incidence}: density {density:.6f}, drawn {drawn:.6f}", end="")
+        assert abs(density - drawn) < 1e-5 + 4 * np.sqrt(drawn * (1 - drawn) / draws)
+
+
 @pytest.mark.parametrize("component", [-1, 0, 1])
 @pytest.mark.parametrize("wind", [24.0, 56.0, 97.0])
 @pytest.mark.parametrize("incidence", [0.0, 50.0, 80.0])

@@ -194,6 +194,54 @@ def test_one_sea_is_described_once(use, variant):
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("wind", [3.0, 15.0])
+def test_nested_deeper_it_is_the_same_sea(use, variant, wind):
+    """A prob_water inside of other BSDFs takes the shape's sea and time too: pictures and parameters are those of one that
+    lies on the shape itself."""
+    mi = use(variant)
+
+    def wrapped():
+        """New ones every time: each takes a sea of its own."""
+        water, up = {"type": "prob_water"}, mi.Bitmap(np.full((2, 2, 3), [0.5, 0.5, 1.0], np.float32))
+        return {
+            "twosided": {"type": "twosided", "b": water},
+            "both sides": {"type": "twosided", "a": water, "b": dict(water)},
+            "mask": {"type": "mask", "opacity": 1.0, "b": water},
+            "blendbsdf": {"type": "blendbsdf", "weight": 0.5, "a": water, "b": dict(water)},
+            "bumpmap": {"type": "bumpmap", "t": {"type": "uniform", "value": 0.0}, "b": water},
+            "normalmap": {"type": "normalmap", "normalmap": {"type": "bitmap", "raw": True, "bitmap": up}, "b": water},
+            "two deep": {"type": "mask", "opacity": 1.0, "b": {"type": "twosided", "b": water}},
+        }
+
+    def picture(bsdf):
+        sea = mi.load_dict({"type": "prob_water_surface", "wind_speed": wind, "radius": 100.0, "vertices": 20_000, "seed": 2, "b": bsdf})
+        scene = mi.load_dict({
+            "type": "scene", "integrator": {"type": "path", "max_depth": 2}, "sea": sea,
+            "sun": {"type": "directional", "direction": [-1, 0, -1]},
+            "sensor": {"type": "perspective", "fov": 40, "to_world": mi.ScalarTransform4f().look_at([-20, 0, 20], [0, 0, 0], [0, 0, 1]),
+                       "film": {"type": "hdrfilm", "width": 24, "height": 24, "rfilter": {"type": "box"}}},
+        })
+        parameters = mi.traverse(sea)
+        images = [np.array(mi.render(scene, spp=16, seed=1))]
+        parameters["time"] = 3.0
+        parameters.update()
+        return [*images, np.array(mi.render(scene, spp=16, seed=1))], str(sea), parameters
+
+    plain, _, _ = picture({"type": "prob_water"})
+    assert plain[0].mean() > 1e-3 and not np.array_equal(*plain)
+    for name, bsdf in wrapped().items():
+        images, text, parameters = picture(bsdf)
+        for image, wanted in zip(images, plain, strict=True):
+            np.testing.assert_allclose(image, wanted, rtol=2e-3, atol=2e-3 * wanted.mean(), err_msg=name)
+        # The sea's own line, and one of each BSDF.
+        count = 3 if name in ("both sides", "blendbsdf") else 2
+        assert text.count("time = 3\n") >= count and text.count(f"wind_speed = {wind:g}\n") >= count, (name, text)
+        assert not any(key.endswith("wind_speed") for key in parameters.keys())
+    with pytest.raises(RuntimeError, match="wind_speed is given on the BSDF of a prob_water_surface"):
+        picture({"type": "twosided", "b": {"type": "prob_water", "wind_speed": 4.0}})
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
 def test_refused_time_changes_nothing(use, variant):
     mi = use(variant)
     shape = surface(mi, vertices=5000, radius=100.0)
