@@ -191,12 +191,17 @@ def test_water_leaving_is_a_share(use, variant):
         with pytest.raises(RuntimeError, match=f"water_leaving = {refused:g} is out of range: allowed is 0 to 1"):
             parameters.update()
         assert number(parameters[key]) == 0.25 and value(mi, bsdf) == before
+    # With a change of something else neither is taken.
+    parameters[key], parameters["wind_speed"] = 2.0, 9.0
+    with pytest.raises(RuntimeError, match="water_leaving = 2"):
+        parameters.update()
+    assert parameters["wind_speed"] == 5.0 and number(parameters[key]) == 0.25 and value(mi, bsdf) == before
     parameters[key] = 1.0
     parameters.update()
     assert number(parameters[key]) == 1.0 and value(mi, bsdf) > before
     texture = {"type": "bitmap", "raw": True, "filter_type": "nearest"}
-    held = [mi.load_dict({"type": "prob_water", "water_leaving": {**texture, "bitmap": mi.Bitmap(np.full((2, 2, 1), x, np.float32))}})
-            for x in (7.0, 1.0)]
+    held = [mi.load_dict({"type": "prob_water", "water_leaving": {**texture, "bitmap": mi.Bitmap(pixels)}})
+            for pixels in (np.full((2, 2, 1), x, np.float32) for x in (7.0, 1.0))]
     assert value(mi, held[0]) == value(mi, held[1]) > before
     if variant.endswith("_rgb"):
         bsdf = mi.load_dict({"type": "prob_water", "water_leaving": {"type": "rgb", "value": [0.1, 0.2, 0.3]}})

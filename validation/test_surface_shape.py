@@ -214,11 +214,13 @@ def test_nested_deeper_it_is_the_same_sea(use, variant, wind):
         }
 
     def picture(bsdf):
-        sea = mi.load_dict({"type": "prob_water_surface", "wind_speed": wind, "radius": 100.0, "vertices": 20_000, "seed": 2, "b": bsdf})
+        sea = mi.load_dict({"type": "prob_water_surface", "wind_speed": wind, "radius": 100.0, "vertices": 20_000, "seed": 2,
+                            "b": bsdf})
         scene = mi.load_dict({
             "type": "scene", "integrator": {"type": "path", "max_depth": 2}, "sea": sea,
             "sun": {"type": "directional", "direction": [-1, 0, -1]},
-            "sensor": {"type": "perspective", "fov": 40, "to_world": mi.ScalarTransform4f().look_at([-20, 0, 20], [0, 0, 0], [0, 0, 1]),
+            "sensor": {"type": "perspective", "fov": 40,
+                       "to_world": mi.ScalarTransform4f().look_at([-20, 0, 20], [0, 0, 0], [0, 0, 1]),
                        "film": {"type": "hdrfilm", "width": 24, "height": 24, "rfilter": {"type": "box"}}},
         })
         parameters = mi.traverse(sea)

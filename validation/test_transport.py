@@ -102,15 +102,16 @@ def test_path_and_ptracer_agree(use, sea, light):
     look = mi.ScalarTransform4f().look_at
     emitters = {
         "directional": {"type": "directional", "direction": [-float(x) for x in at]},
-        "area": {"type": "rectangle", "emitter": {"type": "area", "radiance": 20.0}, "bsdf": {"type": "diffuse", "reflectance": 0.0},
-                 "to_world": look([float(4 * x) for x in at], [0, 0, 0], [0, 0, 1]) @ mi.ScalarTransform4f().scale(0.5)},
+        "area": {"type": "rectangle", "emitter": {"type": "area", "radiance": 20.0},
+                 "bsdf": {"type": "diffuse", "reflectance": 0.0}, "to_world": look([float(4 * x) for x in at], [0, 0, 0], [0, 0, 1]) @ mi.ScalarTransform4f().scale(0.5)},
     }
     scene = mi.load_dict({
         "type": "scene",
         "water": {"type": "rectangle", "bsdf": {"type": "prob_water", **sea}},
         "light": emitters[light],
         "sensor": {"type": "perspective", "fov": 8.0, "to_world": look([float(20 * x) for x in view], [0, 0, 0], [0, 0, 1]),
-                   "film": {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}, "component_format": "float32"}},
+                   "film": {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"},
+                            "component_format": "float32"}},
     })
     means = []
     for integrator, samples in (("path", 500), ("ptracer", 25_000)):
@@ -153,8 +154,8 @@ def test_eval_is_the_ray_casts_mean(use, tmp_path, sea, full):
     off and more."""
     mi = use("scalar_rgb")
     views = np.array([direction(*view) for view in VIEWS])
-    surfaces = {"average = report": {"surface": "ensemble", "average": "report"}, "slopes": {"surface": "empirical", "across": "slopes"},
-                "report": {"surface": "empirical"}}
+    surfaces = {"average = report": {"surface": "ensemble", "average": "report"},
+                "slopes": {"surface": "empirical", "across": "slopes"}, "report": {"surface": "empirical"}}
     bsdfs = {name: mi.load_dict({"type": "prob_water", **surface, **sea}) for name, surface in surfaces.items()}
     worst, exchanged = dict.fromkeys(surfaces, 0.0), dict.fromkeys(surfaces, 0.0)
     for incidence in (0.0, 30.0, 45.0, 55.0, 70.0):

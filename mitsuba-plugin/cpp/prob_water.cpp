@@ -110,7 +110,7 @@ Wind-roughened water (:monosp:`prob_water`)
  * - average
    - |string|
    - What the ensemble's average is of: :monosp:`power`, reciprocal, or the :monosp:`report`'s mean of f times the flat
-     cosine. No effect on the flat surface. (Default: power)
+     cosine, whose source is where the light is: at wo on paths from the camera. No effect on the flat surface. (Default: power)
 
  * - across
    - |string|
@@ -254,8 +254,8 @@ public:
     }
 
     void parameters_changed(const std::vector<std::string> & /*keys*/) override {
-        check_water_leaving();
         try {
+            check_water_leaving();
             refuse([&] {
                 for (auto &[name, value] : m_exposed)
                     if (value != (ScalarFloat) water().number(name))
