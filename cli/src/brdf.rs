@@ -64,7 +64,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
                 let [x, y, _] = directions.vectors[2][row];
                 // The lobe's value has the cosine that whoever integrates f adds.
                 let seen = lobe.eval(i, o, [x, y]);
-                if seen > 0.0 { seen / o[2] } else { 0.0 }
+                if o[2] > 0.0 { seen / o[2] } else { seen }
             })?;
         }
         Surface::Ensemble => {
