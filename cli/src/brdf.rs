@@ -3,7 +3,7 @@
 use crate::input::{self, Columns, STRIDE};
 use crate::progress::Progress;
 use crate::table::{self, Cell, Table};
-use crate::{Outcome, empirical_table, parameters};
+use crate::{Outcome, empirical_table, files, parameters};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use csv::ByteRecord;
 use prob_water::batch::Rows;
@@ -36,6 +36,8 @@ pub fn command() -> Command {
 /// Checks every row, then writes them all with their `f`.
 pub fn run(matches: &ArgMatches) -> Outcome {
     let surfaces = [Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
+    let path = matches.get_one::<PathBuf>("input").expect("has a default");
+    files::apart(matches, [path.as_path()].into_iter().chain(empirical_table::given(matches)))?;
     let (water, of_file) = parameters::water_and_table(&surfaces, matches)?;
     let surface = water.parameters.surface;
     let by_table = surface == Surface::Empirical;
@@ -45,7 +47,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     }
     let drawn = surface == Surface::Instance;
     let columns = if drawn { &PLACES } else { &COLUMNS };
-    let input = input::read(matches.get_one::<PathBuf>("input").expect("has a default"))?;
+    let input = input::read(path)?;
     let half = input.len() as u64;
     let progress = Progress::new(2 * half, table::to_file(matches));
 
@@ -64,7 +66,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
                 let [x, y, _] = directions.vectors[2][row];
                 // The lobe's value has the cosine that whoever integrates f adds.
                 let seen = lobe.eval(i, o, [x, y]);
-                if seen > 0.0 { seen / o[2] } else { 0.0 }
+                if o[2] > 0.0 { seen / o[2] } else { seen }
             })?;
         }
         Surface::Ensemble => {

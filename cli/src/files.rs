@@ -1,6 +1,7 @@
 //! Where rows go: standard output, or files that appear whole or not at all.
 
 use crate::{Outcome, Stop};
+use clap::ArgMatches;
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, IsTerminal, Stdout, Write};
 use std::path::{Path, PathBuf};
@@ -110,6 +111,39 @@ fn handle_interrupts() {
 /// Through a link to the file itself, as an ordinary write would.
 pub fn resolve(path: &Path) -> PathBuf {
     fs::canonicalize(path).or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
+}
+
+/// The flags that name files to write.
+const OUTPUTS: [&str; 2] = ["output", "instances_out"];
+
+/// Refuses outputs that are a file to be read, by whatever name; `-` is standard input.
+pub fn apart<'p>(matches: &ArgMatches, inputs: impl IntoIterator<Item = &'p Path>) -> Result<(), String> {
+    let outputs = OUTPUTS.map(|flag| Some((flag, matches.try_get_one::<PathBuf>(flag).ok()??)));
+    let outputs: Vec<_> = outputs.into_iter().flatten().filter(|(_, path)| *path != Path::new("-")).collect();
+    for input in inputs {
+        let (read, name) = match input.to_str() {
+            Some("-") => (Path::new("/dev/stdin"), "standard input".into()),
+            _ => (input, input.display().to_string()),
+        };
+        if let Some((flag, path)) = outputs.iter().find(|(_, path)| same(path, read)) {
+            let (flag, path) = (flag.replace('_', "-"), path.display());
+            return Err(format!("--{flag} = {path} is also read, as {name}: allowed is another file"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether two names, through links of either kind, are those of one file; devices and pipes are none.
+fn same(a: &Path, b: &Path) -> bool {
+    let [Ok(one), Ok(other)] = [a, b].map(fs::metadata) else { return false };
+    #[cfg(unix)]
+    let identical = {
+        use std::os::unix::fs::MetadataExt;
+        (one.dev(), one.ino()) == (other.dev(), other.ino())
+    };
+    #[cfg(not(unix))]
+    let identical = resolve(a) == resolve(b);
+    one.is_file() && other.is_file() && identical
 }
 
 fn open(path: &Path) -> io::Result<Out> {

@@ -9,6 +9,15 @@ use toml::de::DeTable;
 /// A parameter given as a flag.
 pub type Flag = (&'static str, Value);
 
+/// The sea that a builder has collected, on one of some surfaces; standard error is told of values that are hardly meant.
+pub fn configure(builder: &Builder, surfaces: &[Surface]) -> Result<Water, Error> {
+    let water = builder.parameters()?.configure()?.on(surfaces)?;
+    for warning in water.warnings() {
+        eprintln!("prob-water: warning: {warning}");
+    }
+    Ok(water)
+}
+
 /// The parameters of a file.
 pub struct Model<'d> {
     /// The file.
@@ -92,8 +101,7 @@ impl<'d> Model<'d> {
         for (name, value) in flags {
             builder.set(name, value).map_err(|e| e.to_string())?;
         }
-        let water = builder.parameters().and_then(|p| p.configure());
-        water.and_then(|water| water.on(surfaces)).map_err(|e| self.refuse(flags, &e, None))
+        configure(&builder, surfaces).map_err(|e| self.refuse(flags, &e, None))
     }
 
     /// A refusal at the key that is to blame, or at `place`, or at the table.

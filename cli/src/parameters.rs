@@ -1,9 +1,9 @@
 //! The vocabulary of parameters as flags, and as a file that they stand above.
 
-use crate::image;
-use crate::model::Model;
+use crate::model::{self, Flag, Model};
 use crate::scenario::settings;
 use crate::toml_file::Document;
+use crate::{files, image};
 use clap::{Arg, ArgMatches, value_parser};
 use prob_water::vocabulary::{Builder, ENTRIES, Value};
 use prob_water::{Surface, Water};
@@ -45,7 +45,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 }
 
 /// The parameters given as flags.
-pub fn given(matches: &ArgMatches) -> Vec<(&'static str, Value)> {
+pub fn given(matches: &ArgMatches) -> Vec<Flag> {
     names().filter_map(|name| Some((name, Value::Text(matches.get_one::<String>(name)?.clone())))).collect()
 }
 
@@ -62,24 +62,24 @@ pub fn water_and_table(
     let flags = given(matches);
     match matches.get_one::<PathBuf>(FROM) {
         Some(path) => {
+            files::apart(matches, Some(path.as_path()))?;
             let document = open(path)?;
             let root = document.parse()?;
             let model = Model::alone(&document, &root)?.for_surface(&flags, surfaces)?;
             let table = model.table.as_ref().map(|item| settings::table(item, path)).transpose()?;
+            files::apart(matches, table.as_deref())?;
             Ok((model.water(&flags, surfaces)?, table))
         }
-        None => build(Builder::on(surfaces[0]), &flags)
-            .and_then(|water| water.on(surfaces))
-            .map(|water| (water, None))
-            .map_err(|e| e.to_string()),
+        None => of_flags(&flags, surfaces).map(|water| (water, None)).map_err(|e| e.to_string()),
     }
 }
 
-fn build(mut builder: Builder, flags: &[(&'static str, Value)]) -> Result<Water, prob_water::Error> {
+fn of_flags(flags: &[Flag], surfaces: &[Surface]) -> Result<Water, prob_water::Error> {
+    let mut builder = Builder::on(surfaces[0]);
     for (name, value) in flags {
         builder.set(name, value)?;
     }
-    builder.parameters()?.configure()
+    model::configure(&builder, surfaces)
 }
 
 /// The text of a file, or of a rendered image's attribute.

@@ -7,7 +7,7 @@ mod tables;
 
 use crate::progress::Progress;
 use crate::toml_file::Document;
-use crate::{Outcome, empirical_table, parameters, table, threads};
+use crate::{Outcome, empirical_table, files, parameters, table, threads};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use file::{Method, Scenario};
 use prob_water::exact::Exact;
@@ -41,6 +41,7 @@ pub fn command() -> Command {
 pub fn run(matches: &ArgMatches) -> Outcome {
     threads::start(matches)?;
     let path = matches.get_one::<PathBuf>("input").expect("is required");
+    files::apart(matches, [path.as_path()].into_iter().chain(empirical_table::given(matches)))?;
     let scenario = Scenario::read(path, &parameters::given(matches), empirical_table::given(matches))?;
     let tables = Tables::open(matches, &scenario)?;
     match &scenario.method {

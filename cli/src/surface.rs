@@ -3,7 +3,7 @@
 use crate::input::{self, Columns, STRIDE};
 use crate::progress::Progress;
 use crate::table::{self, Cell, Table};
-use crate::{Outcome, parameters};
+use crate::{Outcome, files, parameters};
 use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
 use prob_water::scenario::{FARTHEST, LONGEST_TIME};
 use prob_water::waves::Component;
@@ -95,6 +95,8 @@ fn grid(text: &str) -> Result<Grid, String> {
 
 /// Writes the points asked for, the waves or the bounds.
 pub fn run(matches: &ArgMatches) -> Outcome {
+    let file = matches.get_one::<PathBuf>("points");
+    files::apart(matches, file.map(PathBuf::as_path))?;
     let water = parameters::water_on(&[Surface::Instance], matches)?;
     let fade = matches.get_flag("fade");
     let draws = match matches.get_one::<String>("draws").expect("has a default").as_str() {
@@ -112,7 +114,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
         let time = sea.all.water.parameters.time;
         let rows = (0..*ny).flat_map(|j| (0..*nx).map(move |i| (i, j)));
         sea.write(matches, nx * ny, rows.map(|(i, j)| [i as f64 * step, j as f64 * step, time]))
-    } else if let Some(path) = matches.get_one::<PathBuf>("points") {
+    } else if let Some(path) = file {
         let points = points(&input::read(path)?, sea.all.water.parameters.time)?;
         sea.write(matches, points.len() as u64, points.into_iter())
     } else if matches.get_flag("waves") {

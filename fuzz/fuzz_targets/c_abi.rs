@@ -169,6 +169,9 @@ unsafe fn run(call: &Call, options: &mut [*mut Options; HELD], seas: &mut [*mut 
             Call::Summary(which) => {
                 let mut summary = [UNTOUCHED; 6];
                 written(answered(prob_water_summary(seas[at(which)], &mut summary)), &summary);
+                let warnings = prob_water_warnings(seas[at(which)]);
+                assert_eq!(warnings.is_null(), seas[at(which)].is_null());
+                assert!(warnings.is_null() || CStr::from_ptr(warnings).to_str().is_ok());
             }
             Call::Eval(which, rows) => {
                 let mut f = vec![UNTOUCHED; rows.count];

@@ -125,6 +125,8 @@ mod ffi {
         fn number(self: &Water, name: &str) -> f64;
         /// `name = value` lines of the parameters and of what follows from them.
         fn describe(self: &Water) -> String;
+        /// Values that are allowed but hardly meant, a line each.
+        fn warnings(self: &Water) -> Vec<String>;
         /// Changes what `describe` tells of the time.
         fn set_time(self: &mut Water, time: f64);
     }
@@ -380,6 +382,10 @@ impl Water {
             text += &format!("\n# table = {}", self.table.as_deref().unwrap_or("the standard one"));
         }
         text
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.water.warnings().iter().map(ToString::to_string).collect()
     }
 
     fn set_time(&mut self, time: f64) {

@@ -56,7 +56,8 @@ const char *prob_water_last_error(void);
 // New options, all at their defaults. Free with `prob_water_options_free`.
 struct ProbWaterOptions *prob_water_options_new(void);
 
-// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact". Beside the vocabulary's there is
+// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact". A value outside of the parameter's own
+// range is refused here, and the earlier one stays. Beside the vocabulary's there is
 // "table", the path of a table of the empirical model for surface "empirical", instead of the library's own.
 //
 // # Safety
@@ -65,7 +66,7 @@ enum ProbWaterStatus prob_water_options_set(struct ProbWaterOptions *options,
                                             const char *name,
                                             const char *value);
 
-// Sets a numeric parameter by its name.
+// Sets a numeric parameter by its name; refused as by `prob_water_options_set`, NaN among the rest.
 //
 // # Safety
 // `options` comes from `prob_water_options_new`; `name` is a C string.
@@ -91,6 +92,13 @@ enum ProbWaterStatus prob_water_configure(const struct ProbWaterOptions *options
 // # Safety
 // `sea` is null or comes from `prob_water_configure` and is not used again.
 void prob_water_free(struct ProbWater *sea);
+
+// Values of a sea that are allowed but hardly meant, as a mistaken unit makes them: a line each in UTF-8, empty where there
+// are none. Valid as long as the sea; null for a null sea.
+//
+// # Safety
+// `sea` is null or comes from `prob_water_configure`.
+const char *prob_water_warnings(const struct ProbWater *sea);
 
 // What the parameters came to.
 //

@@ -1,7 +1,8 @@
 //! The BRDF of water at one point: facets about a wave normal (Eqs. 56-61, 68-71), whitecaps, and their mixture.
 //!
 //! Directions are unit vectors away from the surface: `i` to the source, `o` to the observer,
-//! `n` the wave normal, in coordinates with z up. A direction below the horizon of `n` gives 0.
+//! `n` the wave normal, in coordinates with z up. A direction below the horizon of `n` gives 0; a coordinate that is not a
+//! number gives none.
 
 use crate::optics::Reflectance;
 use crate::real::{Vec3, Wide, dot, each};
@@ -22,6 +23,13 @@ pub(crate) fn cosine<T: Real>(v: Vec3<T>, n: Option<Vec3<T>>) -> T {
     let Some(n) = n else { return v[2] };
     let ([x, y, z], [nx, ny, nz]) = (each(v, T::Wide::widen), each(n, T::Wide::widen));
     (x * nx + y * ny + z * nz).narrow()
+}
+
+/// `f`, or not a number where a coordinate of the directions or one of their cosines to the normal is none: comparisons hide
+/// it.
+#[inline(always)]
+pub(crate) fn defined<T: Real>(i: Vec3<T>, o: Vec3<T>, [ci, cr]: [T; 2], f: T) -> T {
+    T::of(0.0).mul_add((i[0] + o[0]) + (i[1] + o[1]) + (ci + cr), f)
 }
 
 /// `x/cos^2`, finite.
@@ -106,6 +114,19 @@ struct Geometry<T: Real> {
     tilt_c: [T::Wide; 2],
     /// Horizontal parts of the two directions, seen from the normal.
     seen: [[T; 2]; 2],
+    /// Finite; not a number where a coordinate is none.
+    sum: T,
+}
+
+impl<T: Real> Geometry<T> {
+    /// `f` where both directions are above the horizon, else 0; not a number where a coordinate is none, which comparisons
+    /// would hide.
+    #[inline(always)]
+    fn above_horizon(&self, f: T) -> T {
+        let zero = T::of(0.0);
+        let lit = T::lt(zero, self.cos[0]) & T::lt(zero, self.cos[1]);
+        zero.mul_add(self.sum, T::select(lit, f, zero))
+    }
 }
 
 impl<T: Real> Facets<T> {
@@ -125,6 +146,7 @@ impl<T: Real> Facets<T> {
                 tilt_u: [hu, z],
                 tilt_c: [hc, z],
                 seen: [[i[0], i[1]], [o[0], o[1]]],
+                sum: T::rounded(length2),
             };
         };
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
@@ -141,6 +163,7 @@ impl<T: Real> Facets<T> {
             tilt_u: [xu, zz + hu * nu],
             tilt_c: [xc, zz + hc * nc],
             seen: [leaning(i, n), leaning(o, n)],
+            sum: T::rounded(length2) + cos[0],
         }
     }
 
@@ -163,10 +186,14 @@ impl<T: Real> Facets<T> {
     #[inline(always)]
     pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
         let g = self.geometry(i, o, n.into());
-        let zero = T::of(0.0);
-        let lit = T::lt(zero, g.cos[0]) & T::lt(zero, g.cos[1]);
-        let value = T::min(self.density(&g), T::MAX) * self.visible_reflectance(&g);
-        T::select(lit, T::min(value, T::MAX), zero)
+        g.above_horizon(self.lit(&g))
+    }
+
+    /// The same for directions above the horizon.
+    #[inline(always)]
+    fn lit(&self, g: &Geometry<T>) -> T {
+        let value = T::min(self.density(g), T::MAX) * self.visible_reflectance(g);
+        T::min(value, T::MAX)
     }
 
     /// `p/cos^4 xi` (Eqs. 72-73, 78-79) with the constants of Eq. 56.
@@ -288,16 +315,15 @@ impl<T: Real> Lobe<T> {
     /// f of some of its parts, each with its share of the surface, 1/sr.
     #[inline(always)]
     pub fn eval_parts(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
-        let (zero, n) = (T::of(0.0), n.into());
-        let mut f = zero;
+        let g = self.facets.geometry(i, o, n.into());
+        let mut f = T::of(0.0);
         if parts.facets {
-            f = self.smooth_fraction * self.facets.eval(i, o, n);
+            f = self.smooth_fraction * self.facets.lit(&g);
         }
         if parts.whitecaps {
-            let lit = T::lt(zero, cosine(i, n)) & T::lt(zero, cosine(o, n));
-            f = f + T::select(lit, self.whitecap_fraction * self.whitecap_brdf, zero);
+            f = f + self.whitecap_fraction * self.whitecap_brdf;
         }
-        f
+        g.above_horizon(f)
     }
 }
 

@@ -40,6 +40,8 @@ pub struct ProbWaterOptions {
 /// A configured sea.
 pub struct ProbWater {
     water: Water,
+    /// A line each.
+    warnings: CString,
     /// What draws directions; the BRDF itself on a flat surface.
     lobe: Lobe<f64>,
     single: Lobe<f32>,
@@ -173,7 +175,8 @@ pub extern "C" fn prob_water_options_new() -> *mut ProbWaterOptions {
     Box::into_raw(Box::new(ProbWaterOptions { builder: Builder::default(), table: None }))
 }
 
-/// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact". Beside the vocabulary's there is
+/// Sets a parameter by its name to a value written out: "0.15", "inf", "true", "exact". A value outside of the parameter's own
+/// range is refused here, and the earlier one stays. Beside the vocabulary's there is
 /// "table", the path of a table of the empirical model for surface "empirical", instead of the library's own.
 ///
 /// # Safety
@@ -197,7 +200,7 @@ pub unsafe extern "C" fn prob_water_options_set(
     })
 }
 
-/// Sets a numeric parameter by its name.
+/// Sets a numeric parameter by its name; refused as by `prob_water_options_set`, NaN among the rest.
 ///
 /// # Safety
 /// `options` comes from `prob_water_options_new`; `name` is a C string.
@@ -262,7 +265,9 @@ pub unsafe extern "C" fn prob_water_configure(
             Some(empirical) => empirical.sampler,
             None => water.lobe().map_err(refused)?,
         };
-        *sea = Box::into_raw(Box::new(ProbWater { water, lobe, single: lobe.cast(), empirical }));
+        let warnings: Vec<_> = water.warnings().iter().map(ToString::to_string).collect();
+        let warnings = CString::new(warnings.join("\n")).unwrap_or_default();
+        *sea = Box::into_raw(Box::new(ProbWater { water, warnings, lobe, single: lobe.cast(), empirical }));
         Ok(())
     })
 }
@@ -277,6 +282,17 @@ pub unsafe extern "C" fn prob_water_free(sea: *mut ProbWater) {
         // SAFETY: made by Box::into_raw, and given back once.
         drop(unsafe { Box::from_raw(sea) });
     }
+}
+
+/// Values of a sea that are allowed but hardly meant, as a mistaken unit makes them: a line each in UTF-8, empty where there
+/// are none. Valid as long as the sea; null for a null sea.
+///
+/// # Safety
+/// `sea` is null or comes from `prob_water_configure`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn prob_water_warnings(sea: *const ProbWater) -> *const c_char {
+    // SAFETY: by this function's contract.
+    unsafe { sea.as_ref() }.map_or(std::ptr::null(), |sea| sea.warnings.as_ptr())
 }
 
 /// What the parameters came to.

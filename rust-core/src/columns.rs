@@ -161,3 +161,57 @@ fn check(column: &'static str, [x, y, z]: Coordinates, normals: bool) -> Result<
     });
     if good { Ok(()) } else { batch::check_rows(column, rows(), normals) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Parameters, Readings, SlopeMeasure};
+
+    /// In the vectors of every kind a coordinate that is not a number gives none, wherever the others lie, and leaves the
+    /// neighbouring lanes alone.
+    #[test]
+    fn no_number_gives_none() {
+        let defaults = Parameters::default();
+        let seas = [
+            defaults,
+            Parameters { slope_measure: SlopeMeasure::Slope, wind_direction: 30.0, ..defaults },
+            Parameters { readings: Readings::AsPrinted, gram_charlier: false, shadowing: false, ..defaults },
+        ];
+        let (up, below) = ([0.0, 0.6, 0.8], [0.0, 0.6, -0.8]);
+        for sea in seas {
+            let lobe = sea.configure().unwrap().lobe.cast();
+            for (observer, normals, vector, axis) in (0..36).map(|k| (k % 2, k / 2 % 2, k / 4 % 3, k / 12)) {
+                if vector == 2 && normals == 0 {
+                    continue;
+                }
+                // The rows after the fifth do not fill a vector.
+                let mut rows = [[up, if observer == 0 { up } else { below }, [0.0, 0.0, 1.0]]; 21];
+                rows[5][vector][axis] = f32::NAN;
+                rows[20][vector][axis] = f32::NAN;
+                let of = |v: usize| [0, 1, 2].map(|k| rows.iter().map(|row| row[v][k]).collect::<Vec<_>>());
+                let (i, o, n) = (of(0), of(1), of(2));
+                let columns = Columns::unchecked(
+                    i.each_ref().map(|x| &x[..]),
+                    o.each_ref().map(|x| &x[..]),
+                    (normals == 1).then(|| n.each_ref().map(|x| &x[..])),
+                );
+                for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                    for quantity in [Quantity::Brdf, Quantity::Density] {
+                        let mut found = [0.0; 21];
+                        columns.values(level, &lobe, quantity, &mut found);
+                        for (row, x) in found.into_iter().enumerate() {
+                            let holds = if row == 5 || row == 20 {
+                                x.is_nan()
+                            } else if observer == 0 {
+                                x > 0.0
+                            } else {
+                                x == 0.0
+                            };
+                            assert!(holds, "{level:?} {quantity:?} {sea:?} row {row} {vector} {axis}: {x}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

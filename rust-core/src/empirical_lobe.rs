@@ -29,7 +29,7 @@
 //! # }
 //! ```
 
-use crate::brdf::Parts;
+use crate::brdf::{Parts, defined};
 use crate::empirical::Moments;
 use crate::level_water::{LEANING, NOTHING, Spreads, ln_densities};
 use crate::real::Vec3;
@@ -204,7 +204,8 @@ impl EmpiricalLobe {
         })
     }
 
-    /// f, 1/sr (Eq. 90), for unit vectors to source and observer; 0 at or below the horizon.
+    /// f, 1/sr (Eq. 90), for unit vectors to source and observer; 0 at or below the horizon, not a number where a coordinate
+    /// is none.
     pub fn eval<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
         self.eval_parts(i, o, Parts::ALL)
     }
@@ -214,7 +215,7 @@ impl EmpiricalLobe {
     pub fn eval_parts<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
         let zero = T::of(0.0);
         if !(zero.below(i[2]) && zero.below(o[2])) {
-            return zero;
+            return defined(i, o, [i[2], o[2]], zero);
         }
         let place = self.place(i, o);
         let [ratio, whitecaps] = place.in_plane(&self.in_plane, |cell| [cell[0], cell[1]]);
@@ -232,7 +233,7 @@ impl EmpiricalLobe {
         if parts.whitecaps {
             f = f + T::of(self.sampler.whitecap_brdf) * whitecaps;
         }
-        f
+        defined(i, o, [i[2], o[2]], f)
     }
 
     /// What the facets would reflect on level water, over rho, as the logarithm of their density and the rest: towards the
@@ -294,8 +295,9 @@ impl EmpiricalLobe {
 
     /// f with its standard uncertainty (Eqs. 90-91), for unit vectors to source and observer.
     pub fn estimate(&self, i: [f64; 3], o: [f64; 3]) -> Estimate {
-        if i[2] <= 0.0 || o[2] <= 0.0 {
-            return Estimate { mean: 0.0, std: 0.0, outside: false };
+        if !(i[2] > 0.0 && o[2] > 0.0) {
+            let f = defined(i, o, [i[2], o[2]], 0.0);
+            return Estimate { mean: f, std: f, outside: false };
         }
         let place = self.place(i, o);
         let (moments, rho) = self.moments(i, o, &place);
@@ -314,6 +316,7 @@ impl EmpiricalLobe {
                 [mean, std.hypot(rho * facets * wider.hypot(aside))]
             }
         };
+        let [mean, std] = [mean, std].map(|f| defined(i, o, [i[2], o[2]], f));
         Estimate { mean, std, outside: place.outside }
     }
 

@@ -15,7 +15,7 @@
 //! With [`Average::Report`] f is the report's mean instead, without `(N.o)/o_z`. Then waves count most just before they
 //! turn from the observer: the mean is Gauss and Legendre's over seven slopes up to there, in the observer's plane.
 
-use crate::brdf::Parts;
+use crate::brdf::{Parts, defined};
 use crate::characteristic::Component;
 use crate::facet_density::{Cell, FacetDensity};
 use crate::slope_density::{Slopes, WindFrame};
@@ -109,21 +109,24 @@ impl EnsembleLobe {
         Ok(Self { water: *water, sampler, wind, waves })
     }
 
-    /// f, 1/sr, for unit vectors to source and observer; 0 at or below the horizon.
+    /// f, 1/sr, for unit vectors to source and observer; 0 at or below the horizon, not a number where a coordinate is none.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
         self.eval_parts(i, o, Parts::ALL)
     }
 
     /// f of some of its parts, 1/sr.
     pub fn eval_parts(&self, i: [f64; 3], o: [f64; 3], parts: Parts) -> f64 {
-        let (i, o) = (DVec3::from(i), DVec3::from(o));
-        if i.z <= 0.0 || o.z <= 0.0 {
-            return 0.0;
-        }
+        let f = if i[2] > 0.0 && o[2] > 0.0 { self.lit(i, o, parts) } else { 0.0 };
+        defined(i, o, [i[2], o[2]], f)
+    }
+
+    /// The same for directions above the horizon.
+    fn lit(&self, i: [f64; 3], o: [f64; 3], parts: Parts) -> f64 {
         let lobe = &self.water.lobe;
         let Some(waves) = &self.waves else {
-            return self.sampler.eval_parts(i.into(), o.into(), None, parts);
+            return self.sampler.eval_parts(i, o, None, parts);
         };
+        let (i, o) = (DVec3::from(i), DVec3::from(o));
         let report = self.water.parameters.average == Average::Report;
         // Products of smaller cosines might be 0.
         let [i, o] = [i, o].map(|v| v.with_z(v.z.max(TINY)));

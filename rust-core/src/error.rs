@@ -109,6 +109,23 @@ pub enum Error {
     },
 }
 
+/// A value that is allowed but hardly meant: [`crate::Water::warnings`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warning {
+    /// The parameter's name in the vocabulary.
+    pub parameter: &'static str,
+    /// The value in force.
+    pub value: String,
+    /// The usual values, with units.
+    pub usual: &'static str,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} = {} is allowed but unusual: usual is {}", self.parameter, self.value, self.usual)
+    }
+}
+
 /// Refuses a parameter's value.
 pub(crate) fn refuse<T>(
     parameter: &'static str,

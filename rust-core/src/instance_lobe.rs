@@ -70,7 +70,8 @@ impl InstanceLobe {
         self.water.whitecap_probability(-steepest) > 0.0
     }
 
-    /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon.
+    /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon,
+    /// not a number where a coordinate is none.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2]) -> f64 {
         let spot = self.spot(place, None);
         let lobe = self.water.lobe.with_whitecaps(spot.whitecap);
@@ -85,7 +86,9 @@ impl<T: Real> Lobe<T> {
         let (zero, n) = (T::of(0.0), n.into());
         let level = n.map_or(T::of(1.0), |n| n[2]);
         let seen = cosine(i, n) * cosine(o, n) / T::max(level * i[2], T::TINY);
-        let value = T::min(self.eval_parts(i, o, n, parts) * T::max(seen, zero), T::MAX);
-        T::select(T::lt(zero, i[2]) & T::lt(zero, o[2]), value, zero)
+        let f = self.eval_parts(i, o, n, parts);
+        let value = T::min(f * T::max(seen, zero), T::MAX);
+        // What is not a number in f is none here, also below the level horizon.
+        zero.mul_add(f, T::select(T::lt(zero, i[2]) & T::lt(zero, o[2]), value, zero))
     }
 }

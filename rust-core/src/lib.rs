@@ -100,7 +100,7 @@ pub use brdf::Lobe;
 pub use empirical_lobe::{EmpiricalLobe, Estimate};
 pub use ensemble::{Ensemble, Presence};
 pub use ensemble_lobe::EnsembleLobe;
-pub use error::Error;
+pub use error::{Error, Warning};
 pub use exact::Exact;
 pub use facet_table::FacetTable;
 pub use grid::Layout;

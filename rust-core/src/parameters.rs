@@ -4,7 +4,7 @@ use crate::optics::{self, Fresnel, Reflectance};
 use crate::spectrum::Spectrum;
 use crate::waves::Waves;
 use crate::wind::{Wind, WindProfile};
-use crate::{Error, SlopeMeasure, scenario, shadowing, slopes, whitecap};
+use crate::{Error, SlopeMeasure, Warning, scenario, shadowing, slopes, whitecap, wind};
 use std::f64::consts::SQRT_2;
 
 /// Salt or no salt.
@@ -171,9 +171,24 @@ pub struct Water {
 pub const MOST_COMPONENTS: u32 = 65_536;
 /// More instances than any mean needs.
 pub const MOST_INSTANCES: u64 = 1_000_000_000;
+/// Seeds are below it: float64 holds all of them.
+const SEEDS: u64 = 1 << 53;
 
-fn require(parameter: &'static str, value: impl ToString, holds: bool, allowed: &str) -> Result<(), Error> {
-    if holds { Ok(()) } else { refuse(parameter, value, allowed) }
+/// Refuses a number outside of its parameter's own range, whatever the others are; `shown` is the value as it was given.
+pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Result<(), Error> {
+    let [shortest, longest] = optics::WAVELENGTHS;
+    let (holds, allowed) = match parameter {
+        "wind_direction" => (x.is_finite(), "any finite angle, degrees"),
+        "footprint" | "depth" | "fetch" => (x > 0.0, "above 0 m, up to inf"),
+        "components" => ((1.0..=f64::from(MOST_COMPONENTS)).contains(&x), "1 to 65536"),
+        "instances" => ((1.0..=MOST_INSTANCES as f64).contains(&x), "1 to 1000000000"),
+        "seed" => ((0.0..SEEDS as f64).contains(&x), "0 to 9007199254740991"),
+        "time" => (x.abs() <= scenario::LONGEST_TIME, "finite, at most 1e9 s from 0"),
+        "wavelength" => ((shortest..=longest).contains(&x), "0.2 to 200 micrometres"),
+        "ior" => ((1.0..=4.0).contains(&x), "1 to 4"),
+        _ => return wind::check(parameter, x, shown),
+    };
+    if holds { Ok(()) } else { refuse(parameter, shown, allowed) }
 }
 
 impl Water {
@@ -199,6 +214,24 @@ impl Water {
     /// is not the BRDF of a surface with drawn waves.
     pub fn local_lobe(&self) -> Lobe<f64> {
         self.lobe
+    }
+
+    /// Values that are allowed but hardly meant, as a mistaken unit makes them.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let p = &self.parameters;
+        let unusual = |parameter, value: f64, holds: bool, usual| {
+            (!holds).then(|| Warning { parameter, value: value.to_string(), usual })
+        };
+        let (d, azimuth) = (self.footprint, p.wind_direction);
+        let w = if let Wind::FrictionVelocity(w) = p.wind { w } else { 0.0 };
+        [
+            unusual("friction_velocity", w, w == 0.0 || w >= 1.0, "0, or from 1 cm/s (not m/s)"),
+            unusual("wind_direction", azimuth, azimuth.abs() <= 360.0, "-360 to 360 degrees"),
+            unusual("footprint", d, d.is_infinite() || (1e-3..=100.0).contains(&d), "0.001 to 100 m, or inf"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 
     /// Probability of a whitecap (Eqs. 53-54) where a drawn surface has a vertical acceleration in m/s^2; 0 where
@@ -246,33 +279,23 @@ impl Parameters {
     }
 
     /// Checks everything and computes what depends on the parameters alone.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] with the parameter, its value and what is allowed.
     pub fn configure(&self) -> Result<Water, Error> {
         let wind = self.wind.profile()?;
-        require(
-            "wind_direction",
-            self.wind_direction,
-            self.wind_direction.is_finite(),
-            "any finite angle, degrees",
-        )?;
         let footprint = self.footprint();
-        require("footprint", footprint, footprint > 0.0, "above 0 m, up to inf")?;
-        let (m, n, seed) = (self.components, self.instances, self.seed);
-        require("components", m, (1..=MOST_COMPONENTS).contains(&m), "1 to 65536")?;
-        require("instances", n, (1..=MOST_INSTANCES).contains(&n), "1 to 1000000000")?;
-        require("seed", seed, seed < 1 << 53, "0 to 9007199254740991")?;
-        let (t, end) = (self.time, scenario::LONGEST_TIME);
-        require("time", t, t.abs() <= end, "finite, at most 1e9 s from 0")?;
-        require("depth", self.depth, self.depth > 0.0, "above 0 m, up to inf")?;
-        require("fetch", self.fetch, self.fetch > 0.0, "above 0 m, up to inf")?;
-        let [first, last] = optics::WAVELENGTHS;
-        require(
-            "wavelength",
-            self.wavelength,
-            (first..=last).contains(&self.wavelength),
-            "0.2 to 200 micrometres",
-        )?;
+        check("wind_direction", self.wind_direction, self.wind_direction)?;
+        check("footprint", footprint, footprint)?;
+        check("components", f64::from(self.components), self.components)?;
+        check("instances", self.instances as f64, self.instances)?;
+        check("seed", self.seed as f64, self.seed)?;
+        check("time", self.time, self.time)?;
+        check("depth", self.depth, self.depth)?;
+        check("fetch", self.fetch, self.fetch)?;
+        check("wavelength", self.wavelength, self.wavelength)?;
         if let Some(ior) = self.ior {
-            require("ior", ior, (1.0..=4.0).contains(&ior), "1 to 4")?;
+            check("ior", ior, ior)?;
         }
         let ior = self.ior.unwrap_or_else(|| {
             let salt = if self.water == Body::Ocean { optics::SEA_SALT } else { 0.0 };

@@ -13,7 +13,7 @@
 //! elementary functions is needed, and against the ideal, area-weighted Gaussian of slopes its weight
 //! is at most 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
-use crate::brdf::{Facets, GRAZING, Lobe, Parts, cosine};
+use crate::brdf::{Facets, GRAZING, Lobe, Parts, cosine, defined};
 use crate::real::{Vec3, Wide, dot};
 use crate::{Real, Scalar};
 
@@ -21,7 +21,7 @@ use crate::{Real, Scalar};
 const FACET_ALBEDO_FLOOR: f64 = 0.01;
 /// Smallest vertical component of a normal that is told from 0.
 const LYING: f64 = 1e-4;
-/// Densities up to which a draw is lost: rounding alone makes it, and its weight could be infinite.
+/// Densities below which a draw is lost: rounding alone makes it, and its weight could be infinite.
 const LOST: f64 = 1e-37;
 /// Smallest tilt that has an azimuth.
 const LEVEL: f64 = 1e-18;
@@ -32,7 +32,8 @@ const LEVEL: f64 = 1e-18;
 pub struct Sample<T> {
     /// To the observer; zero where nothing could be drawn.
     pub direction: Vec3<T>,
-    /// Its density, 1/sr: what [`Lobe::pdf`] gives for it. 0 marks a draw without a direction.
+    /// Its density, 1/sr: what [`Lobe::pdf`] gives for it. 0 marks a draw without a direction; not a number, a source or a
+    /// normal that is none.
     pub pdf: T,
     /// f of the parts that were asked for, 1/sr.
     pub f: T,
@@ -267,7 +268,7 @@ impl<T: Real> Lobe<T> {
             };
             pdf = pdf + facets * self.facets.pdf(frame.to_local(i), h);
         }
-        T::select(T::lt(zero, ci) & T::lt(zero, cr), pdf, zero)
+        defined(i, o, [ci, cr], T::select(T::lt(zero, ci) & T::lt(zero, cr), pdf, zero))
     }
 }
 
@@ -299,7 +300,7 @@ impl<T: Scalar> Lobe<T> {
             [c * h[0] - i[0], c * h[1] - i[1], c * h[2] - i[2]]
         };
         let pdf = self.pdf_parts(i, direction, n, parts);
-        if !T::of(LOST).below(pdf) {
+        if pdf.below(T::of(LOST)) {
             return Sample { direction: [zero; 3], pdf: zero, f: zero, whitecap };
         }
         Sample { direction, pdf, f: self.eval_parts(i, direction, n, parts), whitecap }

@@ -1,6 +1,7 @@
 //! The one vocabulary of parameters: scene files, flags, C, Python and Rust all use these names.
 
 use crate::optics::Fresnel;
+use crate::parameters::check;
 use crate::wind::Wind;
 use crate::{Across, Average, Body, Error, Parameters, Readings, SlopeMeasure, Surface, Water};
 
@@ -122,6 +123,18 @@ fn number(parameter: &'static str, value: &Value) -> Result<f64, Error> {
         Value::Text(x) => x.trim().parse().map_err(|_| wrong_type(parameter, value, "a number")),
         Value::Flag(_) => Err(wrong_type(parameter, value, "a number")),
     }
+}
+
+/// A number within its parameter's own range.
+fn in_range(parameter: &'static str, value: &Value) -> Result<f64, Error> {
+    let x = number(parameter, value)?;
+    check(parameter, x, value)?;
+    Ok(x)
+}
+
+/// A whole number within its parameter's own range.
+fn whole_in_range<T: TryFrom<u64>>(parameter: &'static str, value: &Value) -> Result<T, Error> {
+    in_range(parameter, value).and_then(|_| whole(parameter, value))
 }
 
 /// A whole number within what `T` holds, of a parameter by its name.
@@ -282,7 +295,11 @@ impl Builder {
         Self { parameters: Parameters { surface, ..Parameters::default() }, ..Self::default() }
     }
 
-    /// Sets one parameter by its name.
+    /// Sets one parameter by its name; one that is refused leaves all as it was.
+    ///
+    /// # Errors
+    /// [`Error::UnknownParameter`], [`Error::WrongType`], [`Error::UnknownChoice`], [`Error::OutOfRange`] for a number that is
+    /// out of the parameter's range whatever the others are, and [`Error::Conflict`] for a second wind.
     pub fn set(&mut self, name: &str, value: &Value) -> Result<(), Error> {
         let Some(entry) = ENTRIES.iter().find(|e| e.name == name) else {
             let known = ENTRIES.map(|e| e.name).join(", ");
@@ -292,35 +309,31 @@ impl Builder {
         let p = &mut self.parameters;
         match name {
             "wind_speed" => {
-                let speed = number(name, value)?;
+                let speed = in_range(name, value)?;
                 self.wind(name, value, Wind::Speed { speed, height: 10.0 })?;
             }
-            "wind_height" => self.wind_height = Some(number(name, value)?),
+            "wind_height" => self.wind_height = Some(in_range(name, value)?),
             "friction_velocity" => {
-                let w = number(name, value)?;
+                let w = in_range(name, value)?;
                 self.wind(name, value, Wind::FrictionVelocity(w))?;
             }
             "beaufort" => {
-                let b = number(name, value)?;
-                if !(0.0..=12.0).contains(&b) || b.fract() != 0.0 {
-                    let allowed = "a whole number from 0 to 12".into();
-                    return Err(Error::OutOfRange { parameter: name, value: value.to_string(), allowed });
-                }
+                let b = in_range(name, value)?;
                 self.wind(name, value, Wind::Beaufort(b as u8))?;
             }
-            "wind_direction" => p.wind_direction = number(name, value)?,
-            "footprint" => p.footprint = Some(number(name, value)?),
+            "wind_direction" => p.wind_direction = in_range(name, value)?,
+            "footprint" => p.footprint = Some(in_range(name, value)?),
             "surface" => p.surface = choice(name, value, &SURFACES)?,
             "average" => p.average = choice(name, value, &AVERAGES)?,
             "across" => p.across = choice(name, value, &ACROSS)?,
-            "components" => p.components = whole(name, value)?,
-            "instances" => p.instances = whole(name, value)?,
-            "seed" => p.seed = whole(name, value)?,
-            "time" => p.time = number(name, value)?,
-            "depth" => p.depth = number(name, value)?,
-            "fetch" => p.fetch = number(name, value)?,
-            "wavelength" => p.wavelength = number(name, value)?,
-            "ior" => p.ior = Some(number(name, value)?),
+            "components" => p.components = whole_in_range(name, value)?,
+            "instances" => p.instances = whole_in_range(name, value)?,
+            "seed" => p.seed = whole_in_range(name, value)?,
+            "time" => p.time = in_range(name, value)?,
+            "depth" => p.depth = in_range(name, value)?,
+            "fetch" => p.fetch = in_range(name, value)?,
+            "wavelength" => p.wavelength = in_range(name, value)?,
+            "ior" => p.ior = Some(in_range(name, value)?),
             "water" => p.water = choice(name, value, &WATERS)?,
             "fresnel" => p.fresnel = choice(name, value, &FRESNELS)?,
             "slope_measure" => p.slope_measure = choice(name, value, &MEASURES)?,
@@ -343,6 +356,9 @@ impl Builder {
     }
 
     /// The parameters, once all have been named.
+    ///
+    /// # Errors
+    /// [`Error::Conflict`] for a `wind_height` without a `wind_speed`.
     pub fn parameters(&self) -> Result<Parameters, Error> {
         let mut p = self.parameters;
         if let Some(h) = self.wind_height {
@@ -519,14 +535,85 @@ mod tests {
             ("fresnel", Value::Flag(true)),
         ] {
             let mut builder = Builder::default();
-            let error = builder
-                .set(name, &value)
+            let set = builder.set(name, &value);
+            // The height decides how much of a wind speed is too much.
+            assert_eq!(set.is_ok(), (name, &value) == ("wind_speed", &number(36.1)), "{name} {value}");
+            let error = set
                 .and_then(|()| builder.parameters())
                 .and_then(|p| p.configure())
                 .expect_err(name)
                 .to_string();
             assert!(error.contains(name) && error.contains(&value.to_string()), "{error}");
         }
+    }
+
+    /// A value that is refused is so by the setter, and leaves the earlier one; numbers and texts alike.
+    #[test]
+    fn setters_refuse() {
+        let far = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e300, 1e300, -1.0, 0.0, 0.05, 1e5, 1e10];
+        for entry in &ENTRIES {
+            let [mut before, mut builder] = [Builder::default(), Builder::default()];
+            for builder in [&mut before, &mut builder] {
+                // Some value that every range has.
+                _ = builder.set(entry.name, &Value::Number(1.0));
+            }
+            for x in far {
+                for value in [Value::Number(x), Value::Text(x.to_string())] {
+                    let Err(error) = builder.set(entry.name, &value) else {
+                        // Then it is good by itself.
+                        let mut alone = Builder::default();
+                        alone.set(entry.name, &value).unwrap();
+                        let parameters = alone.parameters().unwrap();
+                        parameters.configure().unwrap();
+                        builder.set(entry.name, &Value::Number(1.0)).unwrap();
+                        continue;
+                    };
+                    assert_eq!(error.parameters(), [entry.name]);
+                    assert!(error.to_string().contains(&value.to_string()), "{error}");
+                    assert_eq!(builder.parameters(), before.parameters());
+                }
+            }
+        }
+        let mut high = Builder::default();
+        high.set("wind_speed", &Value::Number(40.0)).unwrap();
+        high.set("wind_height", &Value::Number(100.0)).unwrap();
+        high.parameters().unwrap().configure().unwrap();
+        let error = high.set("wind_speed", &Value::Number(60.0)).unwrap_err().to_string();
+        assert!(error.contains("0 to 36.00 m/s at 10 m") && error.contains("at 100 m"), "{error}");
+    }
+
+    #[test]
+    fn what_is_hardly_meant_is_told() {
+        let warnings = |set: &[(&str, f64)]| {
+            let mut builder = Builder::default();
+            for (name, x) in set {
+                builder.set(name, &Value::Number(*x)).unwrap();
+            }
+            let warnings = builder.parameters().unwrap().configure().unwrap().warnings();
+            warnings.iter().map(|warning| warning.to_string()).collect::<Vec<_>>()
+        };
+        for usual in [
+            ("wind_direction", 360.0),
+            ("wind_direction", -360.0),
+            ("footprint", 1e-3),
+            ("footprint", 100.0),
+            ("footprint", f64::INFINITY),
+            ("friction_velocity", 0.0),
+            ("friction_velocity", 1.0),
+            ("wind_speed", 0.0),
+            ("seed", 9e15),
+        ] {
+            assert_eq!(warnings(&[usual]), [""; 0], "{usual:?}");
+        }
+        assert_eq!(
+            warnings(&[("friction_velocity", 0.3), ("wind_direction", -1e9), ("footprint", 2e-4)]),
+            [
+                "friction_velocity = 0.3 is allowed but unusual: usual is 0, or from 1 cm/s (not m/s)",
+                "wind_direction = -1000000000 is allowed but unusual: usual is -360 to 360 degrees",
+                "footprint = 0.0002 is allowed but unusual: usual is 0.001 to 100 m, or inf",
+            ]
+        );
+        assert_eq!(warnings(&[("footprint", 175.0)]).len(), 1);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Wind speed with height and the Beaufort scale: Eqs. 1-2 and Table 1.
 
 use crate::Error;
+use crate::error::refuse;
 
 /// End of Table 1: the largest wind speed at 10 m, m/s.
 pub const WIND_SPEED_END: f64 = 36.0;
@@ -137,17 +138,36 @@ pub(crate) fn bisect(mut low: f64, mut high: f64, beyond: impl Fn(f64) -> bool) 
     }
 }
 
+/// Refuses a number outside of its parameter's own range, whatever the others are: of a wind speed the range at the greatest
+/// height. `shown` is the value as it was given.
+pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Result<(), Error> {
+    let [lowest, highest] = WIND_HEIGHTS;
+    let (holds, allowed) = match parameter {
+        "wind_speed" => {
+            let [end, farthest] = [10.0, highest].map(highest_wind_speed);
+            let allowed =
+                format!("0 to {end:.2} m/s at 10 m, {farthest:.2} m/s at {highest} m, the end of Table 1");
+            ((0.0..=farthest).contains(&x), allowed)
+        }
+        "wind_height" => ((lowest..=highest).contains(&x), "0.1 to 100 m".into()),
+        "friction_velocity" => {
+            ((0.0..=FRICTION_VELOCITY_END).contains(&x), "0 to 238.65 cm/s, the end of Table 1".into())
+        }
+        "beaufort" => ((0.0..=12.0).contains(&x) && x.fract() == 0.0, "a whole number from 0 to 12".into()),
+        _ => unreachable!("{parameter} has no range"),
+    };
+    if holds { Ok(()) } else { refuse(parameter, shown, allowed) }
+}
+
 impl Wind {
-    /// The profile, or which parameter is out of range.
+    /// The wind at every height.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] with the parameter, its value and what is allowed.
     pub fn profile(self) -> Result<WindProfile, Error> {
-        let refuse = |parameter, value: f64, allowed: String| {
-            Err(Error::OutOfRange { parameter, value: value.to_string(), allowed })
-        };
         let w = match self {
             Wind::Speed { speed, height } => {
-                if !(WIND_HEIGHTS[0]..=WIND_HEIGHTS[1]).contains(&height) {
-                    return refuse("wind_height", height, "0.1 to 100 m".into());
-                }
+                check("wind_height", height, height)?;
                 match friction_velocity(speed, height) {
                     Some(w) => w,
                     None => {
@@ -158,15 +178,13 @@ impl Wind {
                 }
             }
             Wind::FrictionVelocity(w) => {
-                if !(0.0..=FRICTION_VELOCITY_END).contains(&w) {
-                    return refuse("friction_velocity", w, "0 to 238.65 cm/s, the end of Table 1".into());
-                }
+                check("friction_velocity", w, w)?;
                 w.abs() // -0 is a calm like 0
             }
-            Wind::Beaufort(number) => match BEAUFORT_FRICTION_VELOCITY.get(usize::from(number)) {
-                Some(&w) => w,
-                None => return refuse("beaufort", f64::from(number), "0 to 12".into()),
-            },
+            Wind::Beaufort(number) => {
+                check("beaufort", f64::from(number), number)?;
+                BEAUFORT_FRICTION_VELOCITY[usize::from(number)]
+            }
         };
         Ok(WindProfile {
             friction_velocity: w,

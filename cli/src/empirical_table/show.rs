@@ -83,7 +83,9 @@ fn incidence(text: &str) -> Result<f64, String> {
 
 /// Writes what is asked for.
 pub fn run(matches: &ArgMatches) -> Outcome {
-    let table = match matches.get_one::<PathBuf>("npz") {
+    let npz = matches.get_one::<PathBuf>("npz");
+    files::apart(matches, npz.map(PathBuf::as_path))?;
+    let table = match npz {
         Some(path) => Cow::Owned(Table::open(path)?),
         None => Cow::Borrowed(Table::standard()),
     };

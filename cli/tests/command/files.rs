@@ -30,9 +30,80 @@ fn from_file_to_file() {
     assert_eq!(succeed(&arguments, ""), "");
     assert_eq!(fs::read_to_string(&to).unwrap(), succeed("brdf", GOOD));
     assert_eq!(names(&folder), ["in.csv", "out.csv"]);
-    // Onto its own input, which has been read by then.
-    succeed(&format!("brdf {} --output {}", from.display(), from.display()), "");
-    assert_eq!(fs::read(&from).unwrap(), fs::read(&to).unwrap());
+}
+
+/// An output that is read as well is refused, whatever reads it and by whatever name, before anything is written.
+#[test]
+fn an_input_is_no_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let sea = "[model]\nwind_speed = 5\n";
+    let scenario =
+        format!("{sea}[[engagement]]\nlaser = [0, 0, 9]\ntarget = [0, 0, 0]\nobservers = [[0, 0, 9]]\n");
+    let tabled = format!("table = 'table.npz'\n{}", sea.replace("[model]", "surface = 'empirical'"));
+    let table = prob_water::Table::standard().to_bytes();
+    let files: [(&str, &[u8]); 6] = [
+        ("rows.csv", GOOD.as_bytes()),
+        ("points.csv", b"x,y\n0,0\n"),
+        ("sea.toml", sea.as_bytes()),
+        ("tabled.toml", tabled.as_bytes()),
+        ("scenario.toml", scenario.as_bytes()),
+        ("table.npz", &table),
+    ];
+    for (name, bytes) in files {
+        fs::write(path(name), bytes).unwrap();
+    }
+    for (arguments, read) in [
+        ("brdf rows.csv", "rows.csv"),
+        ("brdf rows.csv --from sea.toml", "sea.toml"),
+        ("brdf rows.csv --from tabled.toml", "table.npz"),
+        ("brdf rows.csv --surface empirical --table table.npz", "table.npz"),
+        ("surface --points points.csv", "points.csv"),
+        ("surface --bounds --from sea.toml", "sea.toml"),
+        ("spectrum --from sea.toml", "sea.toml"),
+        ("wind --from sea.toml", "sea.toml"),
+        ("scenario scenario.toml --instances 2", "scenario.toml"),
+        ("scenario scenario.toml --surface empirical --table table.npz", "table.npz"),
+        ("table show table.npz", "table.npz"),
+        ("table show table.npz --incidence 30 --angles 0:60:3 --from sea.toml", "sea.toml"),
+    ] {
+        let words = arguments.split(' ').map(|word| {
+            if files.iter().any(|(name, _)| *name == word) { path(word) } else { word.to_owned() }
+        });
+        let arguments = words.collect::<Vec<_>>().join(" ");
+        let other = |name: &str| format!("{arguments} --output {}", path(name));
+        let message = refuse(&other(read), "");
+        let expected = format!("--output = {0} is also read, as {0}: allowed is another file", path(read));
+        assert!(message.contains(&expected), "{message}");
+        // Through links as well.
+        fs::hard_link(path(read), path("hard")).unwrap();
+        assert!(refuse(&other("hard"), "").contains("is also read, as"));
+        fs::remove_file(path("hard")).unwrap();
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(path(read), path("soft")).unwrap();
+            assert!(refuse(&other("soft"), "").contains("is also read, as"));
+            fs::remove_file(path("soft")).unwrap();
+        }
+        for (name, bytes) in files {
+            assert!(fs::read(path(name)).unwrap() == bytes, "{arguments}: {name}");
+        }
+        assert!(names(&folder).len() == files.len());
+        // Another file it is.
+        succeed(&other("other"), "");
+        fs::remove_file(path("other")).unwrap();
+    }
+    let other = "--output /dev/null --instances-out";
+    let message = refuse(&format!("scenario {0} {other} {0}", path("scenario.toml")), "");
+    assert!(message.contains("--instances-out = "), "{message}");
+    // Standard input is a file by another name.
+    let rows = fs::File::open(path("rows.csv")).unwrap();
+    let mut redirected = command();
+    redirected.args(["brdf", "--output", &path("rows.csv")]).stdin(rows);
+    let output = redirected.output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("is also read, as standard input"));
+    assert_eq!(fs::read(path("rows.csv")).unwrap(), GOOD.as_bytes());
 }
 
 #[test]

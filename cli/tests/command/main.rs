@@ -13,6 +13,7 @@ mod scenario_refusals;
 mod spectrum;
 mod surface;
 mod table;
+mod warnings;
 mod wind;
 
 use std::fs;

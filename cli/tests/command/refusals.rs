@@ -13,7 +13,7 @@ fn arguments() {
         ("wind --footprint 0", &["footprint", "0 m"]),
         ("wind --footprint -inf", &["footprint", "-inf"]),
         ("wind --wind-direction north", &["wind_direction", "north"]),
-        ("wind --wind-direction nan", &["wind_direction", "NaN"]),
+        ("wind --wind-direction nan", &["wind_direction", "nan"]),
         ("wind --wind-speed -1", &["wind_speed", "-1"]),
         ("wind --wind-speed 36.1", &["wind_speed", "36.1", "36.00 m/s"]),
         ("wind --friction-velocity 239", &["friction_velocity", "239", "238.65"]),

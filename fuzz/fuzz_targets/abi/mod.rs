@@ -19,6 +19,7 @@ unsafe extern "C" {
     pub fn prob_water_configure(options: *const Options, sea: *mut *mut Sea) -> i32;
     pub fn prob_water_free(sea: *mut Sea);
     pub fn prob_water_summary(sea: *const Sea, summary: *mut [c_double; 6]) -> i32;
+    pub fn prob_water_warnings(sea: *const Sea) -> *const c_char;
     pub fn prob_water_eval(
         sea: *const Sea,
         rows: usize,

@@ -14,15 +14,42 @@ static void check(int holds, const char *what) {
     }
 }
 
+/* By the setter. */
 static void refuses(const char *name, const char *value) {
     struct ProbWaterOptions *options = prob_water_options_new();
-    struct ProbWater *sea = NULL;
-    enum ProbWaterStatus status = prob_water_options_set(options, name, value);
-    if (status == PROB_WATER_STATUS_OK)
-        status = prob_water_configure(options, &sea);
-    check(status == PROB_WATER_STATUS_PARAMETER && sea == NULL, name);
+    check(prob_water_options_set(options, name, value) == PROB_WATER_STATUS_PARAMETER, name);
     check(strstr(prob_water_last_error(), name) != NULL, "the message names the parameter");
     check(strstr(prob_water_last_error(), value) != NULL || strcmp(name, "waves") == 0, "the message names the value");
+    prob_water_options_free(options);
+}
+
+/* By the setter, which leaves the earlier value. */
+static void refuses_number(const char *name, double value) {
+    struct ProbWaterOptions *options = prob_water_options_new();
+    struct ProbWater *sea = NULL;
+    check(prob_water_options_set_number(options, name, 2) == PROB_WATER_STATUS_OK, name);
+    check(prob_water_options_set_number(options, name, value) == PROB_WATER_STATUS_PARAMETER, name);
+    check(strstr(prob_water_last_error(), name) != NULL, "the message names the parameter");
+    check(strstr(prob_water_last_error(), "allowed is") != NULL, "the message names the range");
+    check(prob_water_configure(options, &sea) == PROB_WATER_STATUS_OK, "the earlier value stays");
+    prob_water_free(sea);
+    prob_water_options_free(options);
+}
+
+/* Values that are allowed but hardly meant. */
+static void warnings(void) {
+    struct ProbWaterOptions *options = prob_water_options_new();
+    struct ProbWater *sea = NULL;
+    check(prob_water_configure(options, &sea) == PROB_WATER_STATUS_OK, "defaults");
+    check(strcmp(prob_water_warnings(sea), "") == 0, "nothing to warn of");
+    prob_water_free(sea);
+    check(prob_water_options_set_number(options, "wind_direction", 1e9) == PROB_WATER_STATUS_OK, "any azimuth");
+    check(prob_water_options_set_number(options, "footprint", 0.0002) == PROB_WATER_STATUS_OK, "any footprint");
+    check(prob_water_configure(options, &sea) == PROB_WATER_STATUS_OK, "configure");
+    check(strncmp(prob_water_warnings(sea), "wind_direction = 1000000000", 27) == 0, "the azimuth is told");
+    check(strstr(prob_water_warnings(sea), "\nfootprint = 0.0002") != NULL, "and the footprint");
+    check(prob_water_warnings(NULL) == NULL, "no sea, no warnings");
+    prob_water_free(sea);
     prob_water_options_free(options);
 }
 
@@ -142,7 +169,30 @@ int main(void) {
 
     refuses("friction_velocity", "-1");
     refuses("wind_speed", "NaN");
-    refuses("wind_speed", "40");
+    refuses("wind_speed", "60");
+    refuses_number("wind_speed", NAN);
+    refuses_number("wind_speed", -1);
+    refuses_number("wind_direction", INFINITY);
+    refuses_number("footprint", NAN);
+    refuses_number("footprint", 0);
+    refuses_number("components", 0);
+    refuses_number("seed", -1);
+    refuses_number("time", NAN);
+    refuses_number("depth", -5);
+    refuses_number("wavelength", 0.1);
+    refuses_number("ior", 9);
+    {
+        /* How much of a wind speed is too much its height decides, which may come later. */
+        struct ProbWaterOptions *high = prob_water_options_new();
+        struct ProbWater *there = NULL;
+        check(prob_water_options_set_number(high, "wind_speed", 40) == PROB_WATER_STATUS_OK, "40 m/s somewhere");
+        check(prob_water_configure(high, &there) == PROB_WATER_STATUS_PARAMETER && there == NULL, "but not at 10 m");
+        check(prob_water_options_set_number(high, "wind_height", 100) == PROB_WATER_STATUS_OK, "height");
+        check(prob_water_configure(high, &there) == PROB_WATER_STATUS_OK, "at 100 m");
+        prob_water_free(there);
+        prob_water_options_free(high);
+    }
+    warnings();
     refuses("footprint", "0");
     refuses("footprint", "-2");
     refuses("beaufort", "13");
