@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core import ROOT, Core, direction
-from mitsuba_setup import usable_llvm
+from mitsuba_setup import PLUGIN_ROOT, usable_llvm
 from plugin_calls import BOTH, CPU_VARIANTS, I, O, by_angle, interaction, number, value
 
 @pytest.mark.parametrize("variant", CPU_VARIANTS)
@@ -338,3 +338,16 @@ def test_llvm_is_found_in_ci():
         pytest.skip("not in CI")
     usable, reason = usable_llvm()
     assert usable, reason
+
+
+@pytest.mark.parametrize("variant", BOTH)
+def test_values_hardly_meant_are_told_once(variant):
+    """In a process of its own: Mitsuba writes its log where no test sees it."""
+    code = (f"import mitsuba as mi; mi.set_variant('{variant}'); mi.file_resolver().append('{PLUGIN_ROOT}');"
+            "mi.load_dict({'type': 'prob_water', 'footprint': 2e-4, 'wind_direction': 7200});"
+            "mi.load_dict({'type': 'prob_water', 'footprint': 0.2, 'wind_direction': 270})")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    said = done.stdout + done.stderr
+    for name in ("prob_water: footprint = 0.0002", "prob_water: wind_direction = 7200"):
+        assert said.count(name) == 1, said
+    assert said.count("prob_water: ") == 2, said

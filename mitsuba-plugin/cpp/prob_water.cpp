@@ -481,6 +481,8 @@ private:
 
     void configure() {
         m_water.emplace(refuse([&] { return m_options->configure(varied()); }));
+        for (const rust::String &warning : water().warnings())
+            Log(Warn, "prob_water: %s", std::string(warning));
         bool drawn = water().kind() == prob_water::Kind::Instance;
         m_exposed.clear();
         for (const std::string name : Exposed)

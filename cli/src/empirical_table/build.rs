@@ -97,7 +97,7 @@ pub fn command() -> Command {
         .about("Makes a table of the empirical model, a NumPy npz file")
         .after_help(
             "Rows that are done are kept beside the output, in OUTPUT.npz.part: stopped in whatever way, the same command \
-             goes on from there. The result is the same, byte for byte, whatever the number of threads and of stops. \
+             goes on from there. The result is the same, byte for byte, whatever the number of threads and of stops, on one kind of processor. \
              The default grid with the default instances takes minutes.",
         )
         .arg(

@@ -30,7 +30,7 @@ fn arguments() {
         ("brdf --surface instance", &["column x is missing", "x,y"]),
         ("spectrum --surface flat", &["surface = flat is not served here: allowed is instance"]),
         ("spectrum --wind-speed 0", &["no waves", "k_min", "--wave-number"]),
-        ("spectrum --friction-velocity 0.47", &["no waves", "--wave-number"]),
+        ("spectrum --wind-speed 0.05", &["no waves", "--wave-number"]),
         ("spectrum --points 1", &["--points", "1"]),
         ("spectrum --points 10000001", &["--points", "10000001"]),
         ("spectrum --points many", &["--points", "many"]),
