@@ -91,30 +91,32 @@ const SMALL_SHARE_ERROR: f64 = 0.05;
 
 /// Integrals for the observers whom they serve, draws for the others.
 fn best(scenario: &Scenario, exact: Option<&Exact>, ensemble: &Ensemble, mut tables: Tables) -> Outcome {
+    let limits = &scenario.limits;
+    let serves = |s: &Statistics| s.mean_error <= SMALL_ERROR && s.share_error <= SMALL_SHARE_ERROR;
     let progress = Progress::new(scenario.engagements.len() as u64, true);
     for engagement in &scenario.engagements {
-        let limits = &scenario.limits;
-        let exact = exact.map_or(vec![], |exact| exact.statistics(engagement, limits));
-        let serves = |observer: usize| {
-            exact
-                .get(observer)
-                .is_some_and(|s| s.mean_error <= SMALL_ERROR && s.share_error <= SMALL_SHARE_ERROR)
+        let integrals: Vec<Option<Statistics>> = match exact {
+            Some(exact) => {
+                exact.statistics(engagement, limits).into_iter().map(|s| Some(s).filter(serves)).collect()
+            }
+            None => vec![None; engagement.observers().len()],
         };
-        let others = engagement.with_observers(|observer| !serves(observer));
+        let others = engagement.with_observers(|observer| integrals[observer].is_none());
         let samples = match others.observers() {
             [] => None,
             _ => Some(ensemble.sample(&[others], &|_| ())?),
         };
         progress.add(1);
         progress.aside(|| -> Outcome {
-            let mut drawn = 0;
-            for observer in 0..engagement.observers().len() {
-                match &samples {
-                    Some(samples) if !serves(observer) => {
-                        tables.sample(engagement, observer, samples, [0, drawn], limits)?;
-                        drawn += 1;
+            let mut drawn = 0..;
+            for (observer, integrals) in integrals.iter().enumerate() {
+                match (integrals, &samples) {
+                    (Some(s), _) => tables.statistics(engagement, observer, s, By::Integrals)?,
+                    (None, Some(samples)) => {
+                        let place = [0, drawn.next().unwrap_or_default()];
+                        tables.sample(engagement, observer, samples, place, limits)?;
                     }
-                    _ => tables.statistics(engagement, observer, &exact[observer], By::Integrals)?,
+                    (None, None) => unreachable!("whom integrals do not serve has draws"),
                 }
             }
             Ok(())

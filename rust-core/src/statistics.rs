@@ -93,7 +93,7 @@ impl Statistics {
         let over: Vec<f64> = limits.iter().map(above).collect();
         let settled = effective >= FEWEST_EFFECTIVE && n > 1.0;
         let weighted = draws.iter().any(|d| d.weight != 1.0);
-        let largest = if settled && !(weighted && !limits.is_empty()) {
+        let largest = if settled && (limits.is_empty() || !weighted) {
             Bounds { weight: 1.0, f: max }
         } else {
             bounds()
