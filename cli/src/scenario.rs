@@ -43,6 +43,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     let path = matches.get_one::<PathBuf>("input").expect("is required");
     files::apart(matches, [path.as_path()].into_iter().chain(empirical_table::given(matches)))?;
     let scenario = Scenario::read(path, &parameters::given(matches), empirical_table::given(matches))?;
+    files::apart(matches, scenario.table.as_deref())?;
     let tables = Tables::open(matches, &scenario)?;
     match &scenario.method {
         Method::Draws(ensemble) => draws(&scenario, ensemble, tables),

@@ -171,7 +171,7 @@ fn numbers_of_what_is_not_there_are_refused() {
     let ensemble = Ensemble { proposal: Proposal::Slopes, ..Ensemble::new(&few).unwrap() };
     let refused = ensemble.check(&engagement).unwrap_err().to_string();
     assert_eq!(refused, "components = 3 is out of range: allowed is at least 4 to draw slopes");
-    assert!(ensemble.sample(&[engagement.clone()], &|_| ()).is_err());
+    assert!(ensemble.sample(std::slice::from_ref(&engagement), &|_| ()).is_err());
     let auto = Ensemble { proposal: Proposal::Auto, ..ensemble };
     assert!(auto.sample(&[engagement], &|_| ()).is_ok());
 }

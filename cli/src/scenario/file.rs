@@ -7,7 +7,7 @@ use crate::model::{Flag, Model};
 use crate::toml_file::Document;
 use prob_water::exact::Exact;
 use prob_water::{Across, Draws, EmpiricalLobe, Engagement, Ensemble, Error, Parameters, Surface, Water};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What a file describes; checked.
 pub struct Scenario {
@@ -19,6 +19,8 @@ pub struct Scenario {
     pub limits: Vec<f64>,
     /// One for every time.
     pub engagements: Vec<Engagement>,
+    /// The table that the file names.
+    pub table: Option<PathBuf>,
 }
 
 /// Where statistics come from.
@@ -84,11 +86,14 @@ impl Scenario {
             places.resize(places.len() + of_entry.len(), entry);
             engagements.extend(of_entry);
         }
+        let mut own_table = None;
         let method = if water.parameters.surface == Surface::Empirical {
-            let lobe = by_table(path, &model, &water, flags, table)?;
+            own_table = model.table.as_ref().map(|item| settings::table(item, path)).transpose()?;
+            let table = (table, own_table.as_deref());
+            let lobe = by_table(&model, &water, flags, table)?;
             let slopes = Parameters { across: Across::Slopes, ..water.parameters };
             let slopes = (water.parameters.across == Across::Report)
-                .then(|| slopes.configure().map(|water| by_table(path, &model, &water, flags, table)))
+                .then(|| slopes.configure().map(|water| by_table(&model, &water, flags, table)))
                 .transpose()
                 .map_err(|e| model.refuse(flags, &e, None))?
                 .transpose()?;
@@ -114,7 +119,7 @@ impl Scenario {
                 _ => Method::Draws(Box::new(ensemble)),
             }
         };
-        Ok(Self { water, method, limits: settings.limits, engagements })
+        Ok(Self { water, method, limits: settings.limits, engagements, table: own_table })
     }
 }
 
@@ -123,11 +128,10 @@ const MOST_DRAWS: u64 = 10_000_000;
 
 /// The sea by the table that a flag names, or the file, or by the built-in one.
 fn by_table(
-    file: &Path,
     model: &Model,
     water: &Water,
     flags: &[Flag],
-    flag: Option<&Path>,
+    (flag, own): (Option<&Path>, Option<&Path>),
 ) -> Result<EmpiricalLobe, String> {
     let instances = water.parameters.instances;
     if instances > MOST_DRAWS {
@@ -135,8 +139,7 @@ fn by_table(
         let error = Error::OutOfRange { parameter: "instances", value: instances.to_string(), allowed };
         return Err(model.refuse(flags, &error, None));
     }
-    let own = model.table.as_ref().map(|item| settings::table(item, file)).transpose()?;
-    empirical_table::lobe(water, flag.or(own.as_deref())).map_err(|error| match (&error, flag) {
+    empirical_table::lobe(water, flag.or(own)).map_err(|error| match (&error, flag) {
         (Error::Table { .. }, Some(_)) => error.to_string(), // not the file's fault
         _ => model.refuse(flags, &error, model.table.as_ref()),
     })

@@ -180,6 +180,9 @@ fn a_scenario_names_its_table() {
     let flag = format!("--table {}", tables.path("own.npz").display());
     assert_eq!(succeed(&scenario(&tables, two, &flag), ""), by_file);
     assert_ne!(succeed(&scenario(&tables, two, ""), ""), by_file);
+    // It is read, and so not written.
+    let flags = format!("--output {}", tables.path("own.npz").display());
+    assert!(refuse(&scenario(&tables, &named, &flags), "").contains("own.npz is also read, as"));
     // The flag stands above the file.
     let missing = named.replace("own.npz", "missing.npz");
     assert_eq!(succeed(&scenario(&tables, &missing, &flag), ""), by_file);

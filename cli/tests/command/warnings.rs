@@ -18,7 +18,7 @@ fn every_subcommand_tells_once() {
         "[[engagement]]\nlaser = [0, 0, 9]\ntarget = [0, 0, 0]\nobservers = [[0, 0, 9], [1, 0, 9]]\n";
     for name in ["plain", "told"] {
         let model = if name == "told" { "footprint = 175\nwind_direction = 1e9\n" } else { "" };
-        let text = format!("[model]\ninstances = 3\n{model}{engagement}{engagement}");
+        let text = format!("[model]\ninstances = 100\n{model}{engagement}{engagement}");
         fs::write(path(&format!("{name}.toml")), text).unwrap();
     }
     let flags = "--footprint 175 --wind-direction 1e9";
