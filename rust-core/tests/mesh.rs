@@ -278,7 +278,7 @@ fn whitecap_fraction() {
     }
     // None in a calm, none where they are switched off.
     let off = water(24.0, |p| {
-        p.footprint = Some(0.15);
+        p.surface = Surface::Instance;
         p.whitecaps = false;
     });
     for water in [sea(0.0, 0.15, 0), off] {
