@@ -133,11 +133,13 @@ private:
         u -= Float(row);
         c -= Float(column);
         auto node = [&](uint32_t offset) { return dr::gather<Cell>(cells, index + offset, inside); };
-        Cell near = dr::fmadd(Cell(c), node(1) - node(0), node(0)),
-             far = dr::fmadd(Cell(c), node(rows + 1) - node(rows), node(rows));
-        Cell cell = dr::fmadd(Cell(u), far - near, near);
+        Cell corner = node(0), opposite = node(rows + 1), near = dr::fmadd(Cell(c), node(1) - corner, corner),
+             far_side = node(rows), far = dr::fmadd(Cell(c), opposite - far_side, far_side),
+             cell = dr::fmadd(Cell(u), far - near, near);
         // What a straight line misses.
-        cell[0] = larger(dr::fnmadd(.5f, dr::fmadd(u * (1.f - u), cell[5], c * (1.f - c) * cell[6]), cell[0]), 0.f);
+        Float bend = dr::fmadd(dr::fnmadd(u, u, u), corner[5] + opposite[5],
+                               dr::fnmadd(c, c, c) * (corner[6] + opposite[6]));
+        cell[0] = larger(dr::fnmadd(.25f, bend, cell[0]), 0.f);
         return cell;
     }
 
