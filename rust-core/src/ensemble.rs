@@ -524,7 +524,7 @@ enum Seas<'a> {
     Slopes(&'a SlopeDraws),
 }
 
-/// The largest f, 1/sr, of whitecaps and of facets on any wave, found on slopes to either side of the specular one.
+/// The largest f, 1/sr, of whitecaps and of facets on any wave: the maximum over a grid of slopes about the specular one.
 fn largest(lobe: &Lobe<f64>, [i, o]: [[f64; 3]; 2]) -> f64 {
     const REACH: i32 = 4;
     let half = DVec3::from(i) + DVec3::from(o);

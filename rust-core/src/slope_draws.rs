@@ -44,11 +44,11 @@ pub enum Proposal {
     Auto,
 }
 
-/// Facets are narrow where fewer than one in so many plain draws is effective for the mean at the lobe's peak.
+/// Plain draws per effective one, for the mean at the lobe's peak, above which facets are narrow.
 const NARROW: f64 = 10.0;
 /// Fewest components that make two ellipses.
 pub const FEWEST_COMPONENTS: u32 = 4;
-/// The proposal is so much wider than the product of drawn slopes and facets, for facets have heavier tails.
+/// Standard deviation of the proposal over that of the product of drawn slopes and facets: facets have heavier tails.
 const WIDENING: f64 = 1.2;
 /// Squared length of a pair of normal deviates from uniform numbers of 53 bits, at most: 2 ln 2^53.
 const LARGEST: f64 = 73.5;
@@ -56,7 +56,7 @@ const LARGEST: f64 = 73.5;
 const SPLITS: usize = 3;
 /// Steps around an ellipse between which intersections are looked for.
 const STEPS: usize = 32;
-/// The stream of an instance's further numbers: this bit of the stream of its components is set.
+/// Set in the number of the stream that an instance's further numbers come from.
 const FURTHER: u64 = 1 << 63;
 
 /// What observers see of seas drawn by importance.
@@ -81,7 +81,7 @@ struct Gaussian {
 impl Gaussian {
     fn density(&self, slope: DVec2) -> f64 {
         let at = (DVec2::new(slope.dot(self.wind), slope.dot(self.wind.perp())) - self.centre) / self.sigma;
-        // Beyond the largest that uniform numbers of 53 bits give, no slope is drawn.
+        // Slopes beyond the largest deviates are never drawn.
         if at.length_squared() > LARGEST {
             return 0.0;
         }
@@ -199,7 +199,7 @@ impl Ensemble {
         Some((chance, components, 1.0 / (plain + slopes * over)))
     }
 
-    /// Puts the sea's origin on the beam and looks: the weight of the hit there.
+    /// The hit and the observation where the sea's origin lies on the beam, and their weight beside the phases': `A V/cos theta_i`.
     fn look(
         &self,
         worker: &mut Worker,
