@@ -6,7 +6,7 @@ mod surface;
 use prob_water::real::{IERFC, IERFC_END};
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
 use prob_water::{
-    Average, EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Surface, Table, whitecap,
+    EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Surface, Table, whitecap,
 };
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -53,7 +53,7 @@ mod ffi {
         Empirical,
     }
 
-    /// What `prob_water::ensemble_lobe::Table` holds, for `surface = "ensemble"`; no rows where the sea is level.
+    /// What `prob_water::ensemble_lobe::MeanLobe` holds, for `surface = "ensemble"`; no rows where the sea is level.
     struct Waves {
         rows: u32,
         steps: [f32; 2],
@@ -250,19 +250,20 @@ impl Water {
     fn coefficients(&self) -> ffi::Coefficients {
         let (f, lobe) = (&self.precise.facets, &self.precise);
         let single = |x: f64| x as f32;
+        let [c21, c03] = prob_water::slopes::skewness(&self.water.wind);
         ffi::Coefficients {
-            cos_wind: f.cos_wind,
-            sin_wind: f.sin_wind,
+            cos_wind: f.wind.cos,
+            sin_wind: f.wind.sin,
             sigma_u: f.sigma_u,
             sigma_c: f.sigma_c,
             scale: single(f.scale),
-            c21: f.c21,
-            c03: f.c03,
+            c21,
+            c03,
             steep_gain: single(f.steep_gain),
             sigma_shadow: single(f.sigma_shadow),
             bound: single(f.bound),
-            proposal_u: single(f.proposal_u),
-            proposal_c: single(f.proposal_c),
+            proposal_u: single(f.proposal[0]),
+            proposal_c: single(f.proposal[1]),
             normal_reflectance: f.reflectance.normal,
             excess: f.reflectance.excess,
             whitecap_fraction: single(lobe.whitecap_fraction),
@@ -285,15 +286,15 @@ impl Water {
 
     fn waves(&self) -> ffi::Waves {
         let single = |x: f64| x as f32;
-        let afar = if let Waves::Afar(afar) = &self.waves { afar.table() } else { None };
+        let afar = if let Waves::Afar(afar) = &self.waves { afar.waves.as_ref() } else { None };
         match afar {
-            Some(t) => ffi::Waves {
-                rows: t.rows,
-                steps: t.steps.map(single),
-                cells: t.cells,
-                sigma: t.sigma.map(single),
-                foam: t.foam.map(single),
-                report: t.average == Average::Report,
+            Some(mean) => ffi::Waves {
+                rows: mean.rows,
+                steps: mean.inv_step.map(|inverse| single(1.0 / inverse)),
+                cells: mean.cells.numbers.to_vec(),
+                sigma: mean.sigma.map(single),
+                foam: mean.foam.map(single),
+                report: mean.report,
             },
             None => ffi::Waves {
                 rows: 0,

@@ -5,11 +5,12 @@
 //! number gives none.
 
 use crate::optics::Reflectance;
-use crate::real::{Vec3, Wide, dot, each};
+use crate::real::{Extended, Vec3, dot};
 use crate::shadowing::hidden;
-use crate::slopes::gram_charlier;
+use crate::slopes::{GramCharlier, WIDTH};
 use crate::{Real, Scalar};
 use glam::DVec2;
+use std::f64::consts::SQRT_2;
 
 /// The normal of a flat sea.
 pub fn up<T: Real>() -> Vec3<T> {
@@ -21,8 +22,11 @@ pub fn up<T: Real>() -> Vec3<T> {
 #[inline(always)]
 pub(crate) fn cosine<T: Real>(v: Vec3<T>, n: Option<Vec3<T>>) -> T {
     let Some(n) = n else { return v[2] };
-    let ([x, y, z], [nx, ny, nz]) = (each(v, T::Wide::widen), each(n, T::Wide::widen));
-    (x * nx + y * ny + z * nz).narrow()
+    let [x, y, z] = [0, 1, 2].map(|k| T::Extended::from_real(v[k]));
+    let [nx, ny, nz] = [0, 1, 2].map(|k| T::Extended::from_real(n[k]));
+    let one = T::Extended::from_real(T::of(1.0));
+    let flat = T::Extended::sum_of_products(x, nx, y, ny);
+    T::Extended::sum_of_products(z, nz, flat, one).normalize().to_real()
 }
 
 /// `f`, or not a number where a coordinate of the directions or one of their cosines to the normal is none: comparisons hide
@@ -32,97 +36,164 @@ pub(crate) fn defined<T: Real>(i: Vec3<T>, o: Vec3<T>, [ci, cr]: [T; 2], f: T) -
     T::of(0.0).mul_add((i[0] + o[0]) + (i[1] + o[1]) + (ci + cr), f)
 }
 
-/// `x/cos^2`, finite.
-#[inline(always)]
-fn over_square<T: Real>(x: T, cos: T) -> T {
-    let cos = T::max(cos, T::SMALL);
-    x / (cos * cos)
-}
-
 /// The sine of a cosine's angle.
 #[inline(always)]
-fn sine<T: Real>(cos: T) -> T {
+pub(crate) fn sine<T: Real>(cos: T) -> T {
     T::max((-cos).mul_add(cos, T::of(1.0)), T::of(0.0)).sqrt()
 }
 
-/// The horizontal part of `v` seen from `n`.
+/// The part of `v` in the plane that `n` is normal to, by its horizontal components times `n_z`.
 #[inline(always)]
-fn leaning<T: Real>(v: Vec3<T>, n: Vec3<T>) -> [T; 2] {
+fn tangential_part<T: Real>(v: Vec3<T>, n: Vec3<T>) -> [T; 2] {
     [v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]]
 }
 
-/// Coefficients of the facets' lobe, f_SW of Eq. 56: what evaluation needs and nothing else.
+/// The axes that slopes are told along: W_u, where the wind comes from, and W_c across it (Eq. 68).
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct WindAxes<T: Real> {
+    /// Cosine of phi_W, the azimuth the wind comes from.
+    pub cos: T::Extended,
+    /// Its sine.
+    pub sin: T::Extended,
+    /// So many quarter turns, of a wind along an axis: components are exchanged, and keep their digits.
+    pub quadrant: Option<u8>,
+}
+
+impl WindAxes<f64> {
+    /// Of an azimuth in degrees.
+    pub fn new(azimuth: f64) -> Self {
+        let (sin, cos) = azimuth.to_radians().sin_cos();
+        let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+        let along = |[x, y]: &[f64; 2]| (cos - x).abs() + (sin - y).abs() < 1e-14;
+        Self { cos, sin, quadrant: axes.iter().position(along).map(|k| k as u8) }
+    }
+}
+
+impl<S: Scalar> WindAxes<S> {
+    /// The same axes in another number type.
+    pub fn cast<T: Real>(&self) -> WindAxes<T> {
+        let of = T::Extended::coefficient;
+        WindAxes { cos: of(self.cos), sin: of(self.sin), quadrant: self.quadrant }
+    }
+}
+
+impl<T: Real> WindAxes<T> {
+    /// Components along W_u and W_c of a horizontal vector.
+    #[inline(always)]
+    pub fn components<E: Extended<T>>(&self, x: E, y: E) -> [E; 2] {
+        match self.quadrant {
+            Some(0) => [x, y],
+            Some(1) => [y, -x],
+            Some(2) => [-x, -y],
+            Some(_) => [-y, x],
+            None => {
+                let (cos, sin) = (E::truncate(self.cos), E::truncate(self.sin));
+                let u = E::sum_of_products(x, cos, y, sin).normalize();
+                [u, E::sum_of_products(y, cos, -x, sin).normalize()]
+            }
+        }
+    }
+
+    /// The same for a vector whose last digits do not matter.
+    #[inline(always)]
+    pub fn to_wind(&self, [x, y]: [T; 2]) -> [T; 2] {
+        let [x, y] = [T::Plain::from_real(x), T::Plain::from_real(y)];
+        let [u, c] = self.components(x, y);
+        [u.to_real(), c.to_real()]
+    }
+
+    /// The horizontal vector of components along W_u and W_c.
+    #[inline(always)]
+    pub fn to_world(&self, [u, c]: [T; 2]) -> [T; 2] {
+        match self.quadrant {
+            Some(0) => [u, c],
+            Some(1) => [-c, u],
+            Some(2) => [-u, -c],
+            Some(_) => [c, -u],
+            None => {
+                let (cos, sin) = (self.cos.to_real(), self.sin.to_real());
+                [u * cos - c * sin, u.mul_add(sin, c * cos)]
+            }
+        }
+    }
+
+    /// [`WindAxes::to_wind`] of a vector with a height.
+    #[inline(always)]
+    pub(crate) fn vector_to_wind(&self, v: Vec3<T>) -> Vec3<T> {
+        let [u, c] = self.to_wind([v[0], v[1]]);
+        [u, c, v[2]]
+    }
+}
+
+/// Coefficients of the facets' lobe, f_SW of Eq. 56: what evaluation needs and nothing else. The first ones differ from
+/// footprint to footprint.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct Facets<T: Real> {
-    /// Cosine of phi_W, the azimuth the wind comes from (Eq. 68).
-    pub cos_wind: T::Wide,
-    /// Sine of phi_W.
-    pub sin_wind: T::Wide,
-    /// The wind comes from the azimuth 0: nothing is to be turned.
-    pub along_x: bool,
     /// Standard deviation of the facets' slope along the wind (Eq. 74).
     pub sigma_u: T,
     /// And across it (Eq. 75).
     pub sigma_c: T,
-    /// 1/sigma_u.
-    pub inv_sigma_u: T::Wide,
-    /// 1/sigma_c.
-    pub inv_sigma_c: T::Wide,
+    /// The inverse of [`WIDTH`] times sigma_u: tilts in these widths make the Gaussian a power of 2.
+    pub inv_width_u: T::Extended,
+    /// And of sigma_c.
+    pub inv_width_c: T::Extended,
     /// `1/(2 pi sigma_u sigma_c)` times the 1/4 (or, as printed, pi/4) of Eq. 56.
     pub scale: T,
-    /// Skewness c21 of Eq. 78.
-    pub c21: T::Fine,
-    /// Skewness c03 of Eq. 78.
-    pub c03: T::Fine,
     /// 1/cos^4 of the tilt beyond which `exp(-xi^2/2 sigma^2)/cos^4 xi` would rise again ([`steep_gain`]).
     pub steep_gain: T,
+    /// What `rho G (1 + Lambda)` is held to ([`Facets::projected_area`]).
+    pub bound: T,
+    /// Standard deviations of the proposal that [`crate::sampling`] draws tilts from, along and across the wind.
+    pub proposal: [T; 2],
+    /// `rho G` is held to what the facets themselves leave visible ([`Facets::projected_area`]).
+    pub bounded: bool,
+    /// Where the wind comes from.
+    pub wind: WindAxes<T>,
+    /// Eq. 78.
+    pub correction: GramCharlier<T::Density>,
     /// sigma of Eq. 64.
     pub sigma_shadow: T,
-    /// What `rho G (1 + Lambda)` is held to ([`Facets::visible_bound`]).
-    pub bound: T,
-    /// Standard deviations of the proposal that [`crate::sampling`] draws tilts from.
-    pub proposal_u: T,
-    /// And across the wind.
-    pub proposal_c: T,
     /// rho of Eqs. 62-63.
-    pub reflectance: Reflectance<T::Fine>,
+    pub reflectance: Reflectance<T::Density>,
     /// The density is Gaussian in slopes, not in tilt angles.
     pub slope_measure: bool,
     /// Eq. 78 is applied.
     pub gram_charlier: bool,
     /// Eq. 67 is applied.
     pub shadowing: bool,
-    /// `rho G` is held to what the facets themselves leave visible ([`Facets::visible_bound`]).
-    pub bounded: bool,
     /// Unsigned angles (71-73) and the c21 term (78) as printed.
     pub as_printed: bool,
 }
 
 /// What the two directions and the normal fix, however the water is.
 #[derive(Debug, Clone, Copy)]
-struct Geometry<T: Real> {
+pub(crate) struct Geometry<T: Real, E> {
     /// cos theta_i, cos theta_r (Eq. 60).
-    cos: [T; 2],
+    pub cos: [T; 2],
     /// cos zeta (Eq. 61).
-    cos_zeta: T::Fine,
-    /// 1/cos^2 xi (Eq. 71).
-    inv_cos2: T::Fine,
-    /// Sine-like and cosine-like parts of the signed tilt xi_u from normal to half vector (Eqs. 69-71).
-    tilt_u: [T::Wide; 2],
-    /// And of xi_c.
-    tilt_c: [T::Wide; 2],
-    /// Horizontal parts of the two directions, seen from the normal.
-    seen: [[T; 2]; 2],
+    pub cos_zeta: T::Density,
+    /// tan^2 xi and 1/cos^2 xi (Eq. 71).
+    pub tan2: T::Density,
+    pub inv_cos2: T::Density,
+    /// Sine-like and cosine-like parts of the signed tilts xi_u and xi_c from normal to half vector (Eqs. 69-71).
+    tilt: [[E; 2]; 2],
+    /// The same tilts as slopes.
+    pub slope: [T; 2],
+    /// The source along the wind, across it and along the normal.
+    pub local_i: Vec3<T>,
+    /// Tangential parts of the two directions.
+    tangential: [[T; 2]; 2],
     /// Finite; not a number where a coordinate is none.
     sum: T,
 }
 
-impl<T: Real> Geometry<T> {
+impl<T: Real, E> Geometry<T, E> {
     /// `f` where both directions are above the horizon, else 0; not a number where a coordinate is none, which comparisons
     /// would hide.
     #[inline(always)]
-    fn above_horizon(&self, f: T) -> T {
+    pub fn above_horizon(&self, f: T) -> T {
         let zero = T::of(0.0);
         let lit = T::lt(zero, self.cos[0]) & T::lt(zero, self.cos[1]);
         zero.mul_add(self.sum, T::select(lit, f, zero))
@@ -130,151 +201,186 @@ impl<T: Real> Geometry<T> {
 }
 
 impl<T: Real> Facets<T> {
+    /// Whether a value of the density asks for more digits than `T` has: for Gram-Charlier's polynomial, and an oblique wind,
+    /// which turns a sum of parts that nearly cancel.
+    #[inline(always)]
+    pub(crate) fn needs_extended(&self) -> bool {
+        self.gram_charlier || self.wind.quadrant.is_none()
+    }
+
     /// About a wave normal, or a level surface's.
     #[inline(always)]
-    fn geometry(&self, i: Vec3<T>, o: Vec3<T>, n: Option<Vec3<T>>) -> Geometry<T> {
-        let (x, y, z) = (T::Wide::sum(i[0], o[0]), T::Wide::sum(i[1], o[1]), T::Wide::sum(i[2], o[2]));
-        let h = each([x, y, z], T::Wide::fine);
-        let length2 = dot(h, h);
-        let cos_zeta = Real::min(T::Fine::of(0.5) * length2.sqrt(), T::Fine::of(1.0));
-        let [hu, hc] = self.wind_frame(x, y);
+    pub(crate) fn geometry<E: Extended<T>>(
+        &self,
+        i: Vec3<T>,
+        o: Vec3<T>,
+        n: Option<Vec3<T>>,
+    ) -> Geometry<T, E> {
+        let (x, y, z) = (E::sum(i[0], o[0]), E::sum(i[1], o[1]), E::sum(i[2], o[2]));
+        let [dx, dy, dz] = [x.to_density(), y.to_density(), z.to_density()];
+        let flat2 = dx.mul_add(dx, dy * dy);
+        let length2 = dz.mul_add(dz, flat2);
+        let one = T::Density::of(1.0);
+        let cos_zeta = Real::min(T::Density::of(0.5) * length2.sqrt(), one);
+        let [hu, hc] = self.wind.components(x, y);
         let Some(n) = n else {
+            let z = z.at_least(T::SMALL);
+            let inv_z = z.to_density().recip();
+            let slope = |h: E| T::from_density(h.to_density() * inv_z);
+            let tan2 = flat2 / (z.to_density() * z.to_density());
             return Geometry {
                 cos: [i[2], o[2]],
                 cos_zeta,
-                inv_cos2: T::Fine::of(1.0) + over_square(h[0].mul_add(h[0], h[1] * h[1]), h[2]),
-                tilt_u: [hu, z],
-                tilt_c: [hc, z],
-                seen: [[i[0], i[1]], [o[0], o[1]]],
-                sum: T::rounded(length2),
+                tan2,
+                inv_cos2: one + tan2,
+                tilt: [[hu, z], [hc, z]],
+                slope: [slope(hu), slope(hc)],
+                local_i: self.wind.vector_to_wind(i),
+                tangential: [[i[0], i[1]], [o[0], o[1]]],
+                sum: T::from_density(length2),
             };
         };
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
-        let [nx, ny, nz] = each(n, T::Wide::widen);
-        let [nu, nc] = self.wind_frame(nx, ny);
-        let [xu, xc] = self.wind_frame(x * nz - z * nx, y * nz - z * ny);
-        let zz = z * nz;
-        let cos = [cosine(i, Some(n)), cosine(o, Some(n))];
+        let [nx, ny, nz] = [E::from_real(n[0]), E::from_real(n[1]), E::from_real(n[2])];
+        let [nu, nc] = self.wind.components(nx, ny);
+        let across = |h: E, n: E| E::sum_of_products(h, nz, z, -n).normalize();
+        let [xu, xc] = self.wind.components(across(x, nx), across(y, ny));
+        let frame = self.frame(n);
+        let local_i = frame.map(|axis| dot(axis, i));
+        let [u, c, along_n] = frame.map(|axis| dot(axis, [i[0] + o[0], i[1] + o[1], i[2] + o[2]]));
+        let inv_n = T::max(along_n, T::SMALL).recip();
+        let slope = [u * inv_n, c * inv_n];
+        let tan2 = T::to_density(slope[0].mul_add(slope[0], slope[1] * slope[1]));
         Geometry {
-            cos,
+            cos: [cosine(i, Some(n)), cosine(o, Some(n))],
             cos_zeta,
-            // N.V of the sum of both directions, without cancellation where both are small.
-            inv_cos2: over_square(length2, cos[0].fine() + cos[1].fine()),
-            tilt_u: [xu, zz + hu * nu],
-            tilt_c: [xc, zz + hc * nc],
-            seen: [leaning(i, n), leaning(o, n)],
-            sum: T::rounded(length2) + cos[0],
+            tan2,
+            inv_cos2: one + tan2,
+            tilt: [[xu, E::sum_of_products(hu, nu, z, nz)], [xc, E::sum_of_products(hc, nc, z, nz)]],
+            slope,
+            local_i,
+            tangential: [tangential_part(i, n), tangential_part(o, n)],
+            sum: T::from_density(length2) + dot(i, n),
         }
     }
 
-    /// Components along W_u and W_c (Eq. 68) of a horizontal vector.
+    /// A tilt in the density's measure: the angle, or its tangent, clamped to [`STEEPEST`].
     #[inline(always)]
-    pub(crate) fn wind_frame(&self, x: T::Wide, y: T::Wide) -> [T::Wide; 2] {
-        if self.along_x {
-            return [x, y];
+    fn measure<E: Extended<T>>(&self, [sine, cosine]: [E; 2], level: bool) -> E {
+        if level {
+            return if self.slope_measure { sine.over(cosine) } else { sine.atan(cosine) };
         }
-        [x * self.cos_wind + y * self.sin_wind, y * self.cos_wind - x * self.sin_wind]
-    }
-
-    /// A tilt in the density's measure: the angle, or its tangent; far out where there is none.
-    #[inline(always)]
-    fn measure(&self, [sine, cosine]: [T::Wide; 2]) -> T::Wide {
-        if self.slope_measure { sine.slope(cosine) } else { sine.atan2(cosine) }
+        if !self.slope_measure {
+            return sine.atan2(cosine);
+        }
+        let steep = cosine.to_density().lt(T::Density::TINY);
+        let slope = sine.over(cosine.at_least(T::TINY));
+        E::select(steep, E::from_real(T::of(STEEPEST)), slope)
     }
 
     /// f_SW (Eq. 56), 1/sr.
     #[inline(always)]
     pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
-        let g = self.geometry(i, o, n.into());
-        g.above_horizon(self.lit(&g))
+        let n = n.into();
+        let g = self.geometry::<T::Extended>(i, o, n);
+        g.above_horizon(self.lit(&g, n.is_none()))
     }
 
-    /// The same for directions above the horizon.
+    /// The same for directions above the horizon: `D rho G/(4 cos theta_i cos theta_r)` with `D = p/cos^4 xi`.
     #[inline(always)]
-    fn lit(&self, g: &Geometry<T>) -> T {
-        let value = T::min(self.density(g), T::MAX) * self.visible_reflectance(g);
-        T::min(value, T::MAX)
+    pub(crate) fn lit<E: Extended<T>>(&self, g: &Geometry<T, E>, level: bool) -> T {
+        let density = self.density(g, level);
+        let rho = T::from_density(self.reflectance.eval(g.cos_zeta));
+        let area = T::max(self.projected_area(g, rho), T::TINY);
+        T::min(T::min(T::from_density(density), T::MAX) * (rho * self.scale) / area, T::MAX)
     }
 
-    /// `p/cos^4 xi` (Eqs. 72-73, 78-79) with the constants of Eq. 56.
+    /// `p/cos^4 xi` (Eqs. 72-73, 78-79) over its constants.
     #[inline(always)]
-    fn density(&self, g: &Geometry<T>) -> T {
-        let u = -(self.measure(g.tilt_u) * self.inv_sigma_u);
-        let c = self.measure(g.tilt_c) * self.inv_sigma_c;
-        T::rounded(self.scale.fine() * self.tilt_density(u, c, g.inv_cos2))
+    fn density<E: Extended<T>>(&self, g: &Geometry<T, E>, level: bool) -> T::Density {
+        let [u, c] = g.tilt.map(|tilt| self.measure(tilt, level));
+        let u = u.times(E::truncate(self.inv_width_u));
+        self.tilt_density(u, c.times(E::truncate(self.inv_width_c)), g.inv_cos2)
     }
 
     /// `p/cos^4 xi` with the constants of Eq. 56, of facets along a unit `h` about the wave normal `n`.
     pub(crate) fn density_along(&self, h: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
-        self.density(&self.geometry(h, h, n.into()))
+        let n = n.into();
+        let density = self.density(&self.geometry::<T::Extended>(h, h, n), n.is_none());
+        T::from_density(density * self.scale.to_density())
     }
 
-    /// `rho G`, 0 where `n` turns from one of the directions.
-    pub(crate) fn shadowed_reflectance(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
-        let g = self.geometry(i, o, n.into());
-        let [ci, cr] = g.cos;
-        let zero = T::of(0.0);
-        let lit = T::lt(zero, ci) & T::lt(zero, cr);
-        T::select(lit, self.visible_reflectance(&g) * ci * cr, zero)
-    }
-
-    /// The same over its constants, for tilts U and C in standard deviations and 1/cos^2 of the whole tilt.
+    /// The same over its constants, for tilts in widths and 1/cos^2 of the whole tilt.
     #[inline(always)]
-    pub(crate) fn tilt_density(&self, u: T::Wide, c: T::Wide, inv_cos2: T::Fine) -> T::Fine {
-        let gauss = (T::Wide::of(-0.5) * (u * u + c * c)).exp();
-        let inv_cos4 = inv_cos2 * inv_cos2;
-        let mut p = gauss * inv_cos4;
+    pub(crate) fn tilt_density<E: Extended<T>>(&self, u: E, c: E, inv_cos2: T::Density) -> T::Density {
+        let (zero, floor) = (T::Density::of(0.0), T::Density::of(STEEP_FLOOR));
+        // Slopes have no end; the polynomial must not overflow.
+        let [mut u, c] = if self.slope_measure { [u.clamp(FARTHEST), c.clamp(FARTHEST)] } else { [u, c] };
+        if self.as_printed {
+            u = E::select(zero.lt(u.to_density()), -u, u);
+        }
+        let gauss = E::gauss(u, c);
+        let mut p = gauss * (inv_cos2 * inv_cos2);
         if !self.slope_measure && !self.as_printed {
-            let gain = self.steep_gain.fine();
-            let held = Real::max(gauss * gain, T::Fine::of(STEEP_FLOOR));
-            p = T::Fine::select(gain.lt(inv_cos4), Real::min(p, held), p);
+            p = Real::min(p, Real::max(gauss * self.steep_gain.to_density(), floor));
         }
         if self.gram_charlier {
-            // Beyond 1000 sigma the density is 0 and its polynomial must not overflow.
-            let (zero, far) = (T::Fine::of(0.0), T::Fine::of(1e3));
-            let u = Real::max(Real::min(u.fine(), far), -far);
-            let c = Real::max(Real::min(c.fine(), far), -far);
-            let (u, c) = if self.as_printed { (u.abs(), c.abs()) } else { (u, c) };
-            let correction = gram_charlier(self.c21, self.c03, u, c, self.as_printed);
-            p = p * Real::max(correction, zero);
+            let (high_u, high_c) = (u.to_density(), c.to_density());
+            let correction = self.correction.eval(high_u, high_c);
+            p = p * Real::max(u.corrected(correction, || self.correction.steepest(high_u)), zero);
         }
         p
     }
 
-    /// `rho G/(cos theta_i cos theta_r)` (Eqs. 61-67).
-    #[inline(always)]
-    fn visible_reflectance(&self, g: &Geometry<T>) -> T {
+    /// `rho G`, 0 where `n` turns from one of the directions.
+    pub(crate) fn shadowed_reflectance(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
+        let g = self.geometry::<T::Plain>(i, o, n.into());
         let [ci, cr] = g.cos;
-        let rho = T::rounded(self.reflectance.eval(g.cos_zeta));
-        // A source on the horizon would have f, and the weight of a draw, without bound.
-        let (ci, cr) = (T::max(ci, T::of(GRAZING)), T::max(cr, T::of(GRAZING)));
+        let zero = T::of(0.0);
+        let lit = T::lt(zero, ci) & T::lt(zero, cr);
+        let rho = T::from_density(self.reflectance.eval(g.cos_zeta));
+        T::select(lit, rho * ci * cr / T::max(self.projected_area(&g, rho), T::TINY), zero)
+    }
+
+    /// `cos theta_i cos theta_r/G` (Eqs. 64-67).
+    #[inline(always)]
+    fn projected_area<E>(&self, g: &Geometry<T, E>, rho: T) -> T {
+        let cos = g.cos.map(|cos| T::max(cos, T::of(GRAZING)));
+        self.masked_area(rho, cos, || g.tangential.map(|v| self.spread_along(v)))
+    }
+
+    /// `cos theta_i cos theta_r/G`, held to `rho/bound` times the larger of `(1 + Lambda) cos_i cos_r` of the two directions,
+    /// Lambda by the facets' own slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
+    /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1. `spreads` gives
+    /// [`Facets::spread_along`] of both.
+    #[inline(always)]
+    pub(crate) fn masked_area(&self, rho: T, [ci, cr]: [T; 2], spreads: impl FnOnce() -> [T; 2]) -> T {
         let mut area = ci * cr;
         if self.shadowing {
             area = cr.mul_add(hidden(ci, self.sigma_shadow * sine(ci)), area);
             area = ci.mul_add(hidden(cr, self.sigma_shadow * sine(cr)), area);
         }
-        let value = rho / T::max(area, T::TINY);
-        if self.bounded { T::min(value, self.visible_bound(g)) } else { value }
-    }
-
-    /// `bound/((1 + Lambda) cos_i cos_r)`, Lambda the larger of the two directions' by the facets' own
-    /// slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
-    /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1.
-    #[inline(always)]
-    fn visible_bound(&self, g: &Geometry<T>) -> T {
-        let ([ci, cr], [i, o]) = (g.cos, g.seen);
-        let (shown_i, shown_o) =
-            (ci + hidden(ci, self.spread_along(i)), cr + hidden(cr, self.spread_along(o)));
-        self.bound / T::max(T::max(shown_i * cr, shown_o * ci), T::TINY)
+        if self.bounded {
+            let [spread_i, spread_o] = spreads();
+            let [visible_i, visible_o] = [ci + hidden(ci, spread_i), cr + hidden(cr, spread_o)];
+            area = T::max(area, rho / self.bound * T::max(visible_i * cr, visible_o * ci));
+        }
+        area
     }
 
     /// sqrt 2 times the facets' standard deviation along a direction, times its sine.
     #[inline(always)]
-    fn spread_along(&self, [x, y]: [T; 2]) -> T {
-        let [u, c] = self.wind_frame(T::Wide::widen(x), T::Wide::widen(y));
-        let (u, c) = (u.narrow() * self.sigma_u, c.narrow() * self.sigma_c);
-        T::of(std::f64::consts::SQRT_2) * (u * u + c * c).sqrt()
+    fn spread_along(&self, v: [T; 2]) -> T {
+        let [u, c] = self.wind.to_wind(v);
+        spread([u, c], [self.sigma_u, self.sigma_c])
     }
+}
+
+/// sqrt 2 times the standard deviation of slopes along a horizontal vector, times its length, both along and across the wind.
+#[inline(always)]
+pub(crate) fn spread<T: Real>([u, c]: [T; 2], [sigma_u, sigma_c]: [T; 2]) -> T {
+    let (u, c) = (u * sigma_u, c * sigma_c);
+    T::of(SQRT_2) * u.mul_add(u, c * c).sqrt()
 }
 
 /// Which of the two lobes take part.
@@ -315,15 +421,32 @@ impl<T: Real> Lobe<T> {
     /// f of some of its parts, each with its share of the surface, 1/sr.
     #[inline(always)]
     pub fn eval_parts(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
-        let g = self.facets.geometry(i, o, n.into());
-        let mut f = T::of(0.0);
-        if parts.facets {
-            f = self.smooth_fraction * self.facets.lit(&g);
+        if self.facets.needs_extended() {
+            self.eval_in::<T::Extended>(i, o, n.into(), parts)
+        } else {
+            self.eval_in::<T::Plain>(i, o, n.into(), parts)
         }
-        if parts.whitecaps {
-            f = f + self.whitecap_fraction * self.whitecap_brdf;
-        }
-        g.above_horizon(f)
+    }
+
+    /// The same in the digits of `E`.
+    #[inline(always)]
+    pub(crate) fn eval_in<E: Extended<T>>(
+        &self,
+        i: Vec3<T>,
+        o: Vec3<T>,
+        n: Option<Vec3<T>>,
+        parts: Parts,
+    ) -> T {
+        let g = self.facets.geometry::<E>(i, o, n);
+        let facets = || self.facets.lit(&g, n.is_none());
+        g.above_horizon(match parts {
+            Parts { facets: true, whitecaps: true } => {
+                self.whitecap_fraction.mul_add(self.whitecap_brdf, self.smooth_fraction * facets())
+            }
+            Parts { facets: true, .. } => self.smooth_fraction * facets(),
+            Parts { whitecaps: true, .. } => self.whitecap_fraction * self.whitecap_brdf,
+            _ => T::of(0.0),
+        })
     }
 }
 
@@ -335,34 +458,25 @@ impl<S: Scalar> Lobe<S> {
 
     /// The same coefficients as another number type.
     pub fn cast<T: Real>(&self) -> Lobe<T> {
-        let f = &self.facets;
-        let of = |x: S| T::of(x.to_f64());
+        let (f, of) = (&self.facets, |x: S| T::coefficient(x.to_f64()));
         Lobe {
             facets: Facets {
-                cos_wind: T::Wide::of(f.cos_wind),
-                sin_wind: T::Wide::of(f.sin_wind),
-                along_x: f.along_x,
                 sigma_u: of(f.sigma_u),
                 sigma_c: of(f.sigma_c),
-                inv_sigma_u: T::Wide::of(f.inv_sigma_u),
-                inv_sigma_c: T::Wide::of(f.inv_sigma_c),
+                inv_width_u: T::Extended::coefficient(f.inv_width_u),
+                inv_width_c: T::Extended::coefficient(f.inv_width_c),
                 scale: of(f.scale),
-                c21: T::Fine::of(f.c21),
-                c03: T::Fine::of(f.c03),
                 steep_gain: of(f.steep_gain),
-                sigma_shadow: of(f.sigma_shadow),
                 bound: of(f.bound),
-                proposal_u: of(f.proposal_u),
-                proposal_c: of(f.proposal_c),
-                reflectance: Reflectance {
-                    normal: T::Fine::of(f.reflectance.normal),
-                    excess: T::Fine::of(f.reflectance.excess),
-                    exact: f.reflectance.exact,
-                },
+                proposal: f.proposal.map(of),
+                bounded: f.bounded,
+                wind: f.wind.cast(),
+                correction: f.correction.cast(),
+                sigma_shadow: of(f.sigma_shadow),
+                reflectance: f.reflectance.cast(),
                 slope_measure: f.slope_measure,
                 gram_charlier: f.gram_charlier,
                 shadowing: f.shadowing,
-                bounded: f.bounded,
                 as_printed: f.as_printed,
             },
             whitecap_fraction: of(self.whitecap_fraction),
@@ -372,19 +486,15 @@ impl<S: Scalar> Lobe<S> {
     }
 }
 
-impl<S: Scalar> Facets<S> {
-    /// Turns the wind to another azimuth, in degrees.
-    pub(crate) fn turn(&mut self, degrees: f64) {
-        (self.sin_wind, self.cos_wind) = degrees.to_radians().sin_cos();
-        self.along_x = self.sin_wind == 0.0 && self.cos_wind == 1.0;
-    }
-
+impl<T: Real> Facets<T> {
     /// Gives the facets other standard deviations of slope, along and across the wind, and Eq. 56's constant with the 2 pi
     /// of the density, `scale`.
-    pub(crate) fn set_sigmas(&mut self, [u, c]: [f64; 2], scale: f64) {
-        (self.sigma_u, self.sigma_c) = (S::of(u), S::of(c));
-        (self.inv_sigma_u, self.inv_sigma_c) = (1.0 / u, 1.0 / c);
-        self.scale = S::of(scale / (u * c));
+    pub(crate) fn set_sigmas(&mut self, [u, c]: [T; 2], scale: T) {
+        (self.sigma_u, self.sigma_c) = (u, c);
+        let width = T::of(1.0 / WIDTH);
+        (self.inv_width_u, self.inv_width_c) =
+            (T::Extended::from_real(width / u), T::Extended::from_real(width / c));
+        self.scale = scale / (u * c);
     }
 }
 
@@ -419,8 +529,15 @@ impl Facets<f64> {
     }
 }
 
-/// Smallest cosine to the source that is told from 0: 1e-10 degrees above the horizon.
+/// Cosines are clamped to this: 1e-10 degrees above the horizon. On the horizon f, and the weight of a draw, would have no
+/// bound.
 pub(crate) const GRAZING: f64 = 1e-12;
+
+/// The slope of what has none.
+const STEEPEST: f64 = 1e6;
+
+/// Slopes in widths are clamped to this: the density there is 0.
+const FARTHEST: f64 = 1e3;
 
 /// What steep facets may count beside level ones, whatever their density.
 pub const STEEP_FLOOR: f64 = 1e-6;

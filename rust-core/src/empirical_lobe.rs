@@ -244,7 +244,7 @@ impl EmpiricalLobe {
         let (slope, cos, sin) = match self.across {
             Across::Slopes => {
                 let [x, y, z] = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
-                let [c, s] = [facets.cos_wind, facets.sin_wind].map(T::of);
+                let [c, s] = [facets.wind.cos, facets.wind.sin].map(T::of);
                 let lean = -one / T::max(z, T::of(1e-12));
                 let slope = [lean * (x * c + y * s), lean * (y * c - x * s)];
                 // The waves that carry these facets lean with them, and show the observer more than level water does.
@@ -440,7 +440,7 @@ impl EmpiricalLobe {
     fn place<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> Place<T> {
         let [zero, one] = [0.0, 1.0].map(T::of);
         let facets = &self.sampler.facets;
-        let [cos_wind, sin_wind] = [facets.cos_wind, facets.sin_wind].map(T::of);
+        let [cos_wind, sin_wind] = [facets.wind.cos, facets.wind.sin].map(T::of);
         // Away from the source; with the wind where the source is overhead.
         let flat = (i[0] * i[0] + i[1] * i[1]).sqrt();
         let overhead = flat.below(T::of(1e-6));

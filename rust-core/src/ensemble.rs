@@ -532,7 +532,7 @@ fn largest(lobe: &Lobe<f64>, [i, o]: [[f64; 3]; 2]) -> f64 {
         return lobe.whitecap_brdf;
     }
     let specular = -half.truncate() / half.z;
-    let wind = DVec2::new(lobe.facets.cos_wind, lobe.facets.sin_wind);
+    let wind = DVec2::new(lobe.facets.wind.cos, lobe.facets.wind.sin);
     let spread = lobe.facets.spread(DVec2::new(specular.dot(wind), specular.dot(wind.perp())));
     let offsets =
         (-REACH..=REACH).flat_map(|u| (-REACH..=REACH).map(move |c| DVec2::new(u.into(), c.into())));

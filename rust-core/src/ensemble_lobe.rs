@@ -15,18 +15,22 @@
 //! With [`Average::Report`] f is the report's mean instead, without `(N.o)/o_z`. Then waves count most just before they
 //! turn from the observer: the mean is Gauss and Legendre's over seven slopes up to there, in the observer's plane.
 
-use crate::brdf::{Parts, defined};
+use crate::brdf::{Parts, defined, spread};
 use crate::characteristic::Component;
 use crate::facet_density::{Cell, FacetDensity};
+use crate::packets::{Packets, Tabulated};
+use crate::real::{Vec3, dot};
+use crate::shadowing::hidden;
 use crate::slope_density::{Slopes, WindFrame};
-use crate::surface::normal;
-use crate::{Average, Error, Lobe, Surface, Water};
-use glam::{DVec2, DVec3};
+use crate::{Average, Error, Lobe, Real, Scalar, Surface, Water};
+use glam::DVec2;
 use rayon::prelude::*;
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-/// Nodes of the table to either side of 0.
+/// Nodes to either side of 0 of what is integrated, and of the table how many times as many, interpolated cubically: so fine that
+/// linear interpolation errs by 1e-4 in the median.
 const NODES: usize = 36;
+const FINER: usize = 5;
 /// Gauss and Hermite's rule: standard deviations and weights.
 const RULE: [(f64, f64); 5] = [
     (0.0, 8.0 / 15.0),
@@ -52,39 +56,31 @@ const TINY: f64 = 1e-12;
 /// A sea seen from afar, `surface = "ensemble"`.
 #[derive(Debug, Clone)]
 pub struct EnsembleLobe {
-    water: Water,
     /// Draws directions, and knows their density: the facets' own proposal, widened by the waves' slopes, and whitecaps
     /// in proportion to what they cover. Its `eval` is not this lobe's.
     pub sampler: Lobe<f64>,
-    wind: WindFrame,
-    /// `None`: no waves, the surface is level.
-    waves: Option<Waves>,
+    /// `None`: no waves, the surface is level, and the sampler all there is.
+    pub waves: Option<MeanLobe<f64>>,
 }
 
-/// The table as traced code reads it, with linear interpolation and, of D, what second differences add to it.
+/// The mean over drawn waves.
 #[derive(Debug, Clone)]
-pub struct Table {
-    /// Nodes on a side, the half vector's slope 0 in the middle.
+pub struct MeanLobe<T: Real> {
+    /// The facets on the waves; of whitecaps their BRDF.
+    lobe: Lobe<T>,
+    /// Nodes on a side of the table, the half vector's slope 0 in the middle.
     pub rows: u32,
-    /// Between nodes, tilt angles upwind and crosswind.
-    pub steps: [f64; 2],
+    /// The inverse of the step between nodes, tilt angles upwind and crosswind.
+    pub inv_step: [T; 2],
     /// Row by row (upwind) of every node: D, means and variances of the slopes upwind and crosswind, the second differences of D
     /// upwind and crosswind (which linear interpolation would miss), and a zero.
-    pub cells: Vec<f32>,
+    pub cells: Packets,
     /// Standard deviations of the drawn slopes, upwind and crosswind.
-    pub sigma: [f64; 2],
+    pub sigma: [T; 2],
     /// Mean of N_z under whitecaps, and of N_z times the squares of the slope; without N_z for [`Average::Report`].
-    pub foam: [f64; 3],
-    /// What the mean is of.
-    pub average: Average,
-}
-
-#[derive(Debug, Clone)]
-struct Waves {
-    slopes: Slopes,
-    facets: FacetDensity,
-    /// Mean of N_z under whitecaps, and of N_z times the squares of the slope; without N_z for [`Average::Report`].
-    foam: (f64, DVec2),
+    pub foam: [T; 3],
+    /// [`Average::Report`]: the mean of f, not of power.
+    pub report: bool,
 }
 
 impl EnsembleLobe {
@@ -97,16 +93,14 @@ impl EnsembleLobe {
         let waves = water.waves();
         let wind = WindFrame::new(waves.wind_azimuth);
         let slopes = Component::new(&waves).map(|component| Slopes::new(&component, water)).transpose()?;
-        let waves = slopes.map(|slopes| Waves::new(slopes, water, wind));
         let mut sampler = water.lobe;
         sampler = sampler.with_whitecaps(water.whitecap_probability(0.0));
-        if let Some(waves) = &waves {
+        if let Some(slopes) = &slopes {
             let f = &mut sampler.facets;
-            f.proposal_u = f.proposal_u.hypot(waves.slopes.sigma.x);
-            f.proposal_c = f.proposal_c.hypot(waves.slopes.sigma.y);
-            sampler = sampler.with_whitecaps(foam(&waves.slopes, Average::Power).0);
+            f.proposal = [f.proposal[0].hypot(slopes.sigma.x), f.proposal[1].hypot(slopes.sigma.y)];
+            sampler = sampler.with_whitecaps(foam(slopes, Average::Power).0);
         }
-        Ok(Self { water: *water, sampler, wind, waves })
+        Ok(Self { sampler, waves: slopes.map(|slopes| MeanLobe::new(&slopes, water, wind)) })
     }
 
     /// f, 1/sr, for unit vectors to source and observer; 0 at or below the horizon, not a number where a coordinate is none.
@@ -116,86 +110,25 @@ impl EnsembleLobe {
 
     /// f of some of its parts, 1/sr.
     pub fn eval_parts(&self, i: [f64; 3], o: [f64; 3], parts: Parts) -> f64 {
-        let f = if i[2] > 0.0 && o[2] > 0.0 { self.lit(i, o, parts) } else { 0.0 };
-        defined(i, o, [i[2], o[2]], f)
-    }
-
-    /// The same for directions above the horizon.
-    fn lit(&self, i: [f64; 3], o: [f64; 3], parts: Parts) -> f64 {
-        let lobe = &self.water.lobe;
-        let Some(waves) = &self.waves else {
-            return self.sampler.eval_parts(i, o, None, parts);
-        };
-        let (i, o) = (DVec3::from(i), DVec3::from(o));
-        let report = self.water.parameters.average == Average::Report;
-        // Products of smaller cosines might be 0.
-        let [i, o] = [i, o].map(|v| v.with_z(v.z.max(TINY)));
-        let half = i + o;
-        let cell = waves.facets.at(self.wind.to_wind(-half.truncate() / half.z));
-        let mut reflected = 0.0;
-        if parts.facets && cell.density > 0.0 {
-            let visible =
-                if report { self.visible_mean(&cell, i, o) } else { self.visible_power(&cell, i, o) };
-            reflected = cell.density * visible;
+        match &self.waves {
+            Some(waves) => waves.eval(i, o, parts),
+            None => self.sampler.eval_parts(i, o, None, parts),
         }
-        let [i_wind, o_wind] = [i, o].map(|v| self.wind.to_wind(v.truncate()));
-        if parts.whitecaps {
-            let seen = if report { foam_mean } else { foam_power };
-            reflected += lobe.whitecap_brdf * seen(waves.foam, (i_wind, i.z), (o_wind, o.z)).max(0.0);
-        }
-        if report {
-            reflected *= o.z;
-        }
-        let hidden = waves.slopes.hidden(i_wind, i.z) + waves.slopes.hidden(o_wind, o.z);
-        reflected / (i.z * o.z * (1.0 + hidden))
     }
+}
 
-    /// Mean of `rho G` over the waves that carry a half vector's facets.
-    fn visible_power(&self, cell: &Cell, i: DVec3, o: DVec3) -> f64 {
-        // Either way round the rule meets the same slopes.
-        let across = (o - i).truncate().try_normalize().unwrap_or(DVec2::X);
-        let along = self.wind.to_wind(across);
-        let spread = cell.spread(along);
-        let visible = |(x, weight): &(f64, f64)| {
-            let slope = self.wind.to_world(cell.mean + along * spread * *x);
-            weight * self.water.lobe.facets.shadowed_reflectance(i.into(), o.into(), normal(slope.into()))
-        };
-        RULE.iter().map(visible).sum()
-    }
-
-    /// Mean of `rho G/(N.o)` over them.
-    fn visible_mean(&self, cell: &Cell, i: DVec3, o: DVec3) -> f64 {
-        let o_wind = self.wind.to_wind(o.truncate());
-        let along = o_wind.try_normalize().unwrap_or(DVec2::X);
-        let spread = cell.spread(along);
-        // Across the observer's plane slopes only make normals lean.
-        let across = (cell.variance.element_sum() - spread * spread).max(0.0);
-        let turns = (o.z - o_wind.dot(cell.mean)) / (o_wind.length() * spread).max(TINY);
-        let half = 0.5 * (turns.clamp(-CUT_END, CUT_END) + CUT_END);
-        let visible = |(x, weight): &(f64, f64)| {
-            let x = half * (1.0 + x) - CUT_END;
-            let slope = cell.mean + along * spread * x;
-            let n = DVec3::from((-self.wind.to_world(slope), 1.0))
-                / (1.0 + slope.length_squared() + across).sqrt();
-            let g = self.water.lobe.facets.shadowed_reflectance(i.into(), o.into(), n.to_array());
-            weight * gauss(x) * g / n.dot(o).max(TINY)
-        };
-        half * CUT_RULE.iter().map(visible).sum::<f64>()
-    }
-
-    /// For traced code; `None` where there are no waves and [`EnsembleLobe::sampler`] is all there is.
-    pub fn table(&self) -> Option<Table> {
-        // So fine that linear interpolation errs by 1e-4 in the median.
-        const FINER: usize = 5;
-        let waves = self.waves.as_ref()?;
+impl MeanLobe<f64> {
+    fn new(slopes: &Slopes, water: &Water, wind: WindFrame) -> Self {
+        let average = water.parameters.average;
+        let facets = FacetDensity::new(slopes, water, wind, NODES);
         let rows = 2 * FINER * NODES + 1;
-        let steps = waves.facets.steps / FINER as f64;
+        let steps = facets.steps / FINER as f64;
         let middle = (FINER * NODES) as f64;
         let cells: Vec<Cell> = (0..rows * rows)
             .into_par_iter()
             .map(|n| {
                 let place = DVec2::new((n / rows) as f64 - middle, (n % rows) as f64 - middle);
-                waves.facets.at_angles(place * steps)
+                facets.at_angles(place * steps)
             })
             .collect();
         let density = |n: Option<usize>| n.and_then(|n| cells.get(n)).map_or(0.0, |cell| cell.density);
@@ -204,24 +137,184 @@ impl EnsembleLobe {
                 [rows, 1].map(|m| density(n.checked_sub(m)) - 2.0 * d + density(Some(n + m)));
             [*d, mean.x, mean.y, variance.x, variance.y, bend_u, bend_c, 0.0].map(|x| x as f32)
         });
-        let (level, tilted) = waves.foam;
-        Some(Table {
+        let (level, tilted) = foam(slopes, average);
+        Self {
+            lobe: water.lobe,
             rows: rows as u32,
-            steps: steps.into(),
-            cells: packets.collect(),
-            sigma: waves.slopes.sigma.into(),
+            inv_step: [1.0 / steps.x, 1.0 / steps.y],
+            cells: Packets { width: 8, half: false, numbers: packets.collect() },
+            sigma: slopes.sigma.into(),
             foam: [level, tilted.x, tilted.y],
-            average: self.water.parameters.average,
-        })
+            report: average == Average::Report,
+        }
     }
 }
 
-impl Waves {
-    fn new(slopes: Slopes, water: &Water, wind: WindFrame) -> Self {
-        let facets = FacetDensity::new(&slopes, water, wind, NODES);
-        let foam = foam(&slopes, water.parameters.average);
-        Self { slopes, facets, foam }
+impl<S: Scalar> MeanLobe<S> {
+    /// The same in another number type.
+    pub fn cast<T: Real>(&self) -> MeanLobe<T> {
+        let of = |x: S| T::coefficient(x.to_f64());
+        MeanLobe {
+            lobe: self.lobe.cast(),
+            rows: self.rows,
+            inv_step: self.inv_step.map(of),
+            cells: self.cells.clone(),
+            sigma: self.sigma.map(of),
+            foam: self.foam.map(of),
+            report: self.report,
+        }
     }
+}
+
+/// A direction along the wind, across it and upwards.
+type Local<T> = Vec3<T>;
+
+impl<T: Tabulated> MeanLobe<T> {
+    /// f of some of its parts, 1/sr, for unit vectors to source and observer.
+    #[inline(always)]
+    pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
+        let zero = T::of(0.0);
+        let lit = T::lt(zero, i[2]) & T::lt(zero, o[2]);
+        let wind = &self.lobe.facets.wind;
+        // Products of smaller cosines might be 0.
+        let above = |v: Vec3<T>| [v[0], v[1], T::max(v[2], T::of(TINY))];
+        let (local_i, local_o) = (wind.vector_to_wind(above(i)), wind.vector_to_wind(above(o)));
+        let mut reflected = zero;
+        if parts.facets {
+            reflected = self.facets(local_i, local_o, lit);
+        }
+        if parts.whitecaps {
+            let foam = if self.report {
+                self.foam_mean(local_i, local_o)
+            } else {
+                self.foam_power(local_i, local_o)
+            };
+            reflected = self.lobe.whitecap_brdf.mul_add(T::max(foam, zero), reflected);
+        }
+        if self.report {
+            reflected = reflected * local_o[2];
+        }
+        // Over cos theta_i cos theta_r (1 + L_i + L_o).
+        let masked = |v: Local<T>| hidden(v[2], spread([v[0], v[1]], self.sigma));
+        let area = local_o[2].mul_add(masked(local_i), local_i[2] * masked(local_o));
+        let area = local_i[2].mul_add(local_o[2], area);
+        defined(i, o, [i[2], o[2]], T::select(lit, reflected / T::max(area, T::TINY), zero))
+    }
+
+    /// What facets reflect: their density along the half vector times the mean of the rest over the waves that carry them.
+    #[inline(always)]
+    fn facets(&self, i: Local<T>, o: Local<T>, lit: T::Mask) -> T {
+        let h = [0, 1, 2].map(|k| i[k] + o[k]);
+        let lean = -T::max(h[2], T::SMALL).recip();
+        let cell = self.cell([h[0] * lean, h[1] * lean], lit);
+        let [density, mean_u, mean_c, variance_u, variance_c, ..] = cell;
+        // The vertical plane of the slopes: of the two directions, or of the observer. Either way round they are the same.
+        let across = if self.report { [o[0], o[1]] } else { [o[0] - i[0], o[1] - i[1]] };
+        let inverse = T::max(across[0].mul_add(across[0], across[1] * across[1]), T::of(1e-20)).rsqrt();
+        let [d_u, d_c] = across.map(|x| x * inverse);
+        let variance = T::max((d_u * d_u).mul_add(variance_u, d_c * d_c * variance_c), T::of(0.0));
+        let sigma = variance.sqrt();
+        let cos_zeta = T::min(T::of(0.5) * dot(h, h).sqrt(), T::of(1.0));
+        let rho = T::from_density(self.lobe.facets.reflectance.eval(cos_zeta.to_density()));
+        let slope = |step: T| [d_u.mul_add(step, mean_u), d_c.mul_add(step, mean_c)];
+        let mut visible = T::of(0.0);
+        if !self.report {
+            for (x, weight) in RULE {
+                let g = self.visible(rho, i, o, slope(sigma * T::of(x)), T::of(0.0));
+                visible = g.mul_add(T::of(weight), visible);
+            }
+            return density * rho * visible;
+        }
+        // Up to where waves turn from the observer; across the plane slopes only make normals lean.
+        let across = T::max(variance_u + variance_c - variance, T::of(0.0));
+        let level = o[0].mul_add(d_u, o[1] * d_c);
+        let turns = (o[2] - o[0].mul_add(mean_u, o[1] * mean_c)) / T::max(level * sigma, T::of(TINY));
+        let end = T::of(CUT_END);
+        let half = T::of(0.5) * (T::max(T::min(turns, end), -end) + end);
+        for (x, weight) in CUT_RULE {
+            let x = half.mul_add(T::of(1.0 + x), -end);
+            let g = self.visible(rho, i, o, slope(sigma * x), across);
+            visible = g.mul_add(T::of(weight) * gauss(x), visible);
+        }
+        density * rho * visible * half
+    }
+
+    /// G about the normal of a slope, held to what the facets leave visible, and for the report's mean over its cosine to the
+    /// observer; 0 where it turns from one of the two. There normals lean across as well, by slopes of a variance.
+    #[inline(always)]
+    fn visible(&self, rho: T, i: Local<T>, o: Local<T>, slope: [T; 2], across: T) -> T {
+        let (zero, one, facets) = (T::of(0.0), T::of(1.0), &self.lobe.facets);
+        let mut lean = slope[0].mul_add(slope[0], slope[1] * slope[1]);
+        if self.report {
+            lean = lean + across;
+        }
+        let n_z = (one + lean).rsqrt();
+        let cosine = |v: Local<T>| (v[2] - v[0].mul_add(slope[0], v[1] * slope[1])) * n_z;
+        let (cos_i, cos_o) = (cosine(i), cosine(o));
+        let lit = T::lt(zero, cos_i) & T::lt(zero, cos_o);
+        let tangential = |v: Local<T>| [0, 1].map(|k| v[2].mul_add(slope[k], v[k]) * n_z);
+        let area = facets.masked_area(rho, [cos_i, cos_o], || {
+            [i, o].map(|v| spread(tangential(v), [facets.sigma_u, facets.sigma_c]))
+        });
+        let seen = if self.report { cos_i } else { cos_i * cos_o };
+        T::select(lit, seen / T::max(area, T::TINY), zero)
+    }
+
+    /// Facets along a half vector of a slope upwind and crosswind; none beyond the table.
+    #[inline(always)]
+    fn cell(&self, slope: [T; 2], lit: T::Mask) -> [T; 8] {
+        let (zero, end) = (T::of(0.0), T::of(f64::from(self.rows - 1)));
+        let middle = T::of(0.5 * f64::from(self.rows - 1));
+        let place =
+            [0, 1].map(|k| (slope[k] * (slope[k] * slope[k]).atan_over()).mul_add(self.inv_step[k], middle));
+        let within = |x: T| !T::lt(x, zero) & T::lt(x, end);
+        let inside = lit & within(place[0]) & within(place[1]);
+        let [(row, u), (column, c)] = place.map(|x| T::select(inside, x, zero).step(self.rows - 1));
+        let rows = f64::from(self.rows);
+        let index = row.mul_add(T::of(rows), column);
+        let node = |offset: f64| T::lookup::<8>(&self.cells, index + T::of(offset), inside);
+        let (corner, right, far, opposite) = (node(0.0), node(1.0), node(rows), node(rows + 1.0));
+        let between = |t: T, a: T, b: T| t.mul_add(b - a, a);
+        let cell = |k: usize| between(u, between(c, corner[k], right[k]), between(c, far[k], opposite[k]));
+        // What a straight line misses of D, by its second differences.
+        let bow = |t: T| (-t).mul_add(t, t);
+        let bend = bow(c).mul_add(corner[6] + opposite[6], bow(u) * (corner[5] + opposite[5]));
+        let density = T::max(T::of(-0.25).mul_add(bend, cell(0)), zero);
+        [T::select(inside, density, zero), cell(1), cell(2), cell(3), cell(4), zero, zero, zero]
+    }
+
+    /// Mean of `(N.i)(N.o)/N_z` under whitecaps.
+    #[inline(always)]
+    fn foam_power(&self, i: Local<T>, o: Local<T>) -> T {
+        let [level, u, c] = self.foam;
+        (level * i[2]).mul_add(o[2], (u * i[0]).mul_add(o[0], c * i[1] * o[1]))
+    }
+
+    /// Mean of `(N.i)/N_z` under whitecaps where they face `o`, if their slopes are Gaussian.
+    #[inline(always)]
+    fn foam_mean(&self, i: Local<T>, o: Local<T>) -> T {
+        let [level, u, c] = self.foam;
+        let variance = (u * o[0]).mul_add(o[0], c * o[1] * o[1]) / T::max(level, T::TINY);
+        let inverse = T::max(variance, T::of(TINY)).rsqrt();
+        let turns = o[2] * inverse;
+        let tilted = (u * i[0]).mul_add(o[0], c * i[1] * o[1]) * inverse * gauss(turns);
+        (level * i[2]).mul_add(below(turns), tilted)
+    }
+}
+
+/// Gauss's density.
+#[inline(always)]
+fn gauss<T: Real>(x: T) -> T {
+    (T::of(-0.5) * x * x).exp() * T::of(1.0 / TAU.sqrt())
+}
+
+/// Its integral up to an x that is not negative, to 1e-7 (Abramowitz and Stegun 1964, 7.1.26).
+#[inline(always)]
+fn below<T: Real>(x: T) -> T {
+    let t = T::of(0.327_591_1 * FRAC_1_SQRT_2).mul_add(x, T::of(1.0)).recip();
+    let coefficients = [0.254_829_592, -0.284_496_736, 1.421_413_741, -1.453_152_027, 1.061_405_429];
+    let sum = coefficients.iter().rev().fold(T::of(0.0), |sum, c| sum.mul_add(t, T::of(*c)));
+    (T::of(-0.5) * sum * t).mul_add((T::of(-0.5) * x * x).exp(), T::of(1.0))
 }
 
 /// Mean of N_z, or of 1, under whitecaps, and of the same times the squares of the slope.
@@ -236,21 +329,4 @@ fn foam(slopes: &Slopes, average: Average) -> (f64, DVec2) {
         foam.1 += share * point.slope * point.slope;
     }
     foam
-}
-
-/// Mean of `(N.i)(N.o)/N_z` under whitecaps, for directions' horizontal parts upwind and crosswind and their heights.
-fn foam_power((level, tilted): (f64, DVec2), (i, i_z): (DVec2, f64), (o, o_z): (DVec2, f64)) -> f64 {
-    level * i_z * o_z + (tilted * i).dot(o)
-}
-
-/// Mean of `(N.i)/N_z` under whitecaps where they face `o`, if their slopes are Gaussian.
-fn foam_mean((level, tilted): (f64, DVec2), (i, i_z): (DVec2, f64), (o, o_z): (DVec2, f64)) -> f64 {
-    let spread = ((tilted * o).dot(o) / level.max(TINY)).sqrt().max(TINY);
-    let turns = (o_z / spread).min(1.0 / TINY);
-    level * i_z * 0.5 * libm::erfc(-turns / SQRT_2) + (tilted * i).dot(o) / spread * gauss(turns)
-}
-
-/// Gauss's density.
-fn gauss(x: f64) -> f64 {
-    (-0.5 * x * x).exp() / TAU.sqrt()
 }

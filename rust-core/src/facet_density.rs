@@ -86,11 +86,6 @@ impl FacetDensity {
 }
 
 impl Cell {
-    /// Standard deviation of the slopes along a horizontal unit vector upwind and crosswind.
-    pub fn spread(&self, along: DVec2) -> f64 {
-        (along * along).dot(self.variance).max(0.0).sqrt()
-    }
-
     /// For a half vector of a slope upwind and crosswind.
     pub fn new(slopes: &Slopes, water: &Water, wind: WindFrame, half: DVec2) -> Self {
         let facets = &water.lobe.facets;

@@ -35,7 +35,7 @@ impl FacetTable {
                 water.parameters.facets(&water.wind, water.ior, slopes::variances(&water.wind, footprint));
             // Where no bound is in force nothing reaches the slack.
             let bound = if f.bounded { f.bound } else { BOUND_SLACK };
-            [f.sigma_u, f.sigma_c, f.steep_gain, bound, f.proposal_u, f.proposal_c, 0.0, 0.0]
+            [f.sigma_u, f.sigma_c, f.steep_gain, bound, f.proposal[0], f.proposal[1], 0.0, 0.0]
         };
         let rows: Vec<Row> = (0..NODES).into_par_iter().map(row).collect();
         Self {
@@ -58,12 +58,11 @@ impl FacetTable {
         let (a, b, t) = (&self.rows[node], &self.rows[node + 1], place - node as f64);
         let [sigma_u, sigma_c, gain, bound, u, c, ..]: Row =
             std::array::from_fn(|k| a[k] + t * (b[k] - a[k]));
-        facets.set_sigmas([sigma_u, sigma_c], self.scale);
+        facets.set_sigmas([sigma_u, sigma_c].map(T::of), T::of(self.scale));
         facets.steep_gain = T::of(gain);
         facets.bound = T::of(bound);
         facets.bounded = self.bounded;
-        facets.proposal_u = T::of(u);
-        facets.proposal_c = T::of(c);
+        facets.proposal = [u, c].map(T::of);
     }
 
     /// For traced code, linear between rows: the first row's logarithm and the step, the constant over

@@ -2,7 +2,7 @@
 //! on level water. The mean over drawn waves is close to it, and their ratio changes slowly with wind, footprint and
 //! directions, where the mean itself changes by orders of magnitude.
 
-use crate::brdf::Facets;
+use crate::brdf::{Facets, WindAxes};
 use crate::characteristic::variances;
 use crate::exact::Exact;
 use crate::facet_density;
@@ -41,12 +41,12 @@ impl Spreads {
 
     /// The same sea under a wind from another azimuth, in degrees.
     pub fn turned(mut self, degrees: f64) -> Self {
-        self.all.turn(degrees);
+        self.all.wind = WindAxes::new(degrees);
         self
     }
 
     fn to_wind(self, v: DVec2) -> DVec2 {
-        let wind = DVec2::new(self.all.cos_wind, self.all.sin_wind);
+        let wind = DVec2::new(self.all.wind.cos, self.all.wind.sin);
         DVec2::new(v.dot(wind), v.dot(wind.perp()))
     }
 
@@ -63,7 +63,7 @@ impl Spreads {
     }
 
     fn to_world(self, v: DVec2) -> DVec2 {
-        let wind = DVec2::new(self.all.cos_wind, self.all.sin_wind);
+        let wind = DVec2::new(self.all.wind.cos, self.all.wind.sin);
         v.x * wind + v.y * wind.perp()
     }
 

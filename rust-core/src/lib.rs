@@ -73,6 +73,7 @@ pub mod lanes;
 mod level_water;
 pub mod mesh;
 pub mod optics;
+pub mod packets;
 mod parameters;
 pub mod planes;
 mod quadrature;

@@ -57,16 +57,23 @@ pub struct Reflectance<T> {
     pub exact: bool,
 }
 
-impl<T: Real> Reflectance<T> {
+impl Reflectance<f64> {
     /// Of a refractive index.
     pub fn new(ior: f64, fresnel: Fresnel) -> Self {
-        Self {
-            normal: T::of(normal_reflectance(ior)),
-            excess: T::of(ior * ior - 1.0),
-            exact: fresnel == Fresnel::Exact,
-        }
+        Self { normal: normal_reflectance(ior), excess: ior * ior - 1.0, exact: fresnel == Fresnel::Exact }
     }
 
+    /// The same in another number type.
+    pub fn cast<T: Real>(&self) -> Reflectance<T> {
+        Reflectance {
+            normal: T::coefficient(self.normal),
+            excess: T::coefficient(self.excess),
+            exact: self.exact,
+        }
+    }
+}
+
+impl<T: Real> Reflectance<T> {
     /// rho(zeta) for the cosine of zeta.
     #[inline(always)]
     pub fn eval(&self, cos: T) -> T {
@@ -110,7 +117,7 @@ mod tests {
     #[test]
     fn exact_reflectance_is_fresnels() {
         let n = 1.34f64;
-        let r = Reflectance::<f64>::new(n, Fresnel::Exact);
+        let r = Reflectance::new(n, Fresnel::Exact);
         for degrees in [0.0f64, 10.0, 45.0, 53.26, 80.0, 89.9] {
             let (c, s) = (degrees.to_radians().cos(), degrees.to_radians().sin());
             let g = (1.0 - (s / n) * (s / n)).sqrt();
@@ -120,14 +127,13 @@ mod tests {
         assert!((r.eval(1.0) - normal_reflectance(n)).abs() < 1e-16);
         assert!((r.eval(0.0) - 1.0).abs() < 1e-15);
         assert!((r.schlick(0.0) - 1.0).abs() < 1e-15);
-        assert_eq!(Reflectance::<f64>::new(1.0, Fresnel::Exact).eval(0.5), 0.0);
+        assert_eq!(Reflectance::new(1.0, Fresnel::Exact).eval(0.5), 0.0);
     }
 
     /// docs/model.md: Schlick against exact is -19 % at 45 degrees, -14 % at 60, +15 % at 80.
     #[test]
     fn schlick_errs_as_documented() {
-        let (s, e) =
-            (Reflectance::<f64>::new(1.33, Fresnel::Schlick), Reflectance::new(1.33, Fresnel::Exact));
+        let (s, e) = (Reflectance::new(1.33, Fresnel::Schlick), Reflectance::new(1.33, Fresnel::Exact));
         for (degrees, error) in [(45.0f64, -0.194), (60.0, -0.14), (80.0, 0.15)] {
             let c = degrees.to_radians().cos();
             assert!((s.eval(c) / e.eval(c) - 1.0 - error).abs() < 0.006);

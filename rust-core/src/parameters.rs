@@ -1,6 +1,7 @@
-use crate::brdf::{Facets, Lobe, steep_gain};
+use crate::brdf::{Facets, Lobe, WindAxes, steep_gain};
 use crate::error::refuse;
 use crate::optics::{self, Fresnel, Reflectance};
+use crate::slopes::GramCharlier;
 use crate::spectrum::Spectrum;
 use crate::waves::Waves;
 use crate::wind::{Wind, WindProfile};
@@ -246,7 +247,7 @@ impl Water {
     /// The same sea under a wind from another azimuth, in degrees.
     pub(crate) fn turned(mut self, degrees: f64) -> Self {
         self.parameters.wind_direction = degrees;
-        self.lobe.facets.turn(degrees);
+        self.lobe.facets.wind = WindAxes::new(degrees);
         self
     }
 
@@ -323,40 +324,33 @@ impl Parameters {
     /// The facets of a wind, an index and slope variances.
     pub(crate) fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
         let [sigma_u, sigma_c] = variances.map(f64::sqrt);
-        let [c21, c03] = slopes::skewness(wind);
         let as_printed = self.readings == Readings::AsPrinted;
         let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
         let slope_measure = self.slope_measure == SlopeMeasure::Slope;
         let mut facets = Facets {
-            cos_wind: 1.0,
-            sin_wind: 0.0,
-            along_x: true,
-            sigma_u: 1.0,
-            sigma_c: 1.0,
-            inv_sigma_u: 1.0,
-            inv_sigma_c: 1.0,
+            sigma_u,
+            sigma_c,
+            inv_width_u: 1.0,
+            inv_width_c: 1.0,
             scale: 1.0,
-            c21,
-            c03,
             steep_gain: steep_gain(sigma_u.max(sigma_c)),
-            sigma_shadow: shadowing::sigma(wind.w10),
             // In tilt angles facets show up to (8 sigma_i^2 + 3 sigma_j^2)/3 more area than their slopes' Lambda.
             // A percent is left to quadratures and rounding, so that "at most 1" can be checked.
             bound: 0.99 / if slope_measure { 1.0 } else { 1.0 + 3.0 * (variances[0] + variances[1]) },
-            proposal_u: sigma_u,
-            proposal_c: sigma_c,
+            proposal: [sigma_u, sigma_c],
+            bounded: false,
+            wind: WindAxes::new(self.wind_direction),
+            correction: GramCharlier::new(slopes::skewness(wind), as_printed),
+            sigma_shadow: shadowing::sigma(wind.w10),
             reflectance: Reflectance::new(ior, self.fresnel),
             slope_measure,
             gram_charlier: self.gram_charlier,
             shadowing: self.shadowing,
-            bounded: false,
             as_printed,
         };
-        facets.turn(self.wind_direction);
         facets.set_sigmas([sigma_u, sigma_c], eq_56 / std::f64::consts::TAU);
         let stretch = facets.proposal_stretch();
-        facets.proposal_u *= stretch;
-        facets.proposal_c *= stretch;
+        facets.proposal = facets.proposal.map(|sigma| sigma * stretch);
         facets.bounded = self.shadowing && !as_printed && facets.needs_bound();
         facets
     }

@@ -1,6 +1,6 @@
 //! The number types the closed form is written over: one text for float64, float32 and lanes of float32.
 
-use std::ops::{Add, BitAnd, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 pub(crate) mod sealed {
     pub trait Sealed {}
@@ -8,7 +8,7 @@ pub(crate) mod sealed {
     impl Sealed for f64 {}
 }
 
-/// A real number of the closed form. Decisions are masks and selections, so that lanes fit.
+/// A real number of the closed form. Decisions are masks and selections, so that lanes and recorded kernels fit.
 pub trait Real:
     sealed::Sealed
     + Copy
@@ -20,14 +20,16 @@ pub trait Real:
     + Div<Output = Self>
 {
     /// The outcome of a comparison.
-    type Mask: Copy + BitAnd<Output = Self::Mask>;
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
 
-    /// A type with digits to spare for the tilts.
-    type Wide: Wide<Self>;
+    /// Extended precision, for tilts.
+    type Extended: Extended<Self>;
 
-    /// The type of the factors beside Gram-Charlier's polynomial, which passes 100, and of itself: one with digits to spare
-    /// where that costs little.
-    type Fine: Real<Fine = Self::Fine>;
+    /// Tilts where their last digits do not matter.
+    type Plain: Extended<Self>;
+
+    /// The type of the factors of the slopes' density: Gram-Charlier's polynomial passes 100, and float64 costs a scalar little.
+    type Density: Real<Density = Self::Density, Mask = Self::Mask>;
 
     /// The largest finite value.
     const MAX: Self;
@@ -36,12 +38,14 @@ pub trait Real:
     /// A value whose inverse has a finite fourth power.
     const SMALL: Self;
 
-    /// The number nearest to `x`.
+    /// The number nearest to `x`, a constant of the formula.
     fn of(x: f64) -> Self;
+    /// The number nearest to `x`, which differs from sea to sea.
+    fn coefficient(x: f64) -> Self;
     /// Rounded from the type of the density's factors.
-    fn rounded(fine: Self::Fine) -> Self;
+    fn from_density(x: Self::Density) -> Self;
     /// In that type.
-    fn fine(self) -> Self::Fine;
+    fn to_density(self) -> Self::Density;
     /// `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
     /// `a` where `mask` holds, else `b`.
@@ -56,55 +60,82 @@ pub trait Real:
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
+    /// `1/self`.
+    fn recip(self) -> Self;
+    /// `1/sqrt(self)`.
+    fn rsqrt(self) -> Self;
     /// Natural exponential.
     fn exp(self) -> Self;
-    /// Angle of the point (x, y) = (`other`, `self`), radians.
+    /// `2^-self` of what is not negative.
+    fn exp2_neg(self) -> Self;
+    /// Natural logarithm of a positive number.
+    fn ln(self) -> Self;
+    /// Angle of the point (x, y) = (`other`, `self`), radians, for positive x.
     fn atan2(self, other: Self) -> Self;
+    /// `atan(t)/t` of `self = t^2`.
+    fn atan_over(self) -> Self;
+    /// Sine and cosine of so many turns, from 0 to 1.
+    fn sin_cos_turns(self) -> (Self, Self);
+    /// `sin(x)/x` and `cos x` of `self = x^2`, up to a quarter turn's.
+    fn sinc_cos(self) -> (Self, Self);
     /// `exp(-x^2)/sqrt(pi) - x erfc(x)` for `x >= 0`: the integral of erfc from x to infinity.
     fn ierfc(self) -> Self;
 }
 
-/// A number with digits to spare beyond those of `T`: for the tilts, whose rounding errors the Gaussian and the
-/// Gram-Charlier polynomial magnify a thousandfold.
-pub trait Wide<T: Real>:
-    Copy + std::fmt::Debug + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
-    /// The number nearest to `x`.
-    fn of(x: f64) -> Self;
-    /// `x`, with digits to spare.
-    fn widen(x: T) -> Self;
-    /// `a + b`, with digits to spare.
+/// A number in more digits than `T` has, for tilts, whose rounding errors the Gaussian and the Gram-Charlier polynomial magnify
+/// a thousandfold; or in as many, where that does not matter.
+pub trait Extended<T: Real>: Copy + std::fmt::Debug + Neg<Output = Self> {
+    /// `x`, which differs from sea to sea.
+    fn coefficient(x: f64) -> Self;
+    /// `x` exactly.
+    fn from_real(x: T) -> Self;
+    /// In as many digits as this type has.
+    fn truncate(x: T::Extended) -> Self;
+    /// `a + b`.
     fn sum(a: T, b: T) -> Self;
-    /// Rounded.
-    fn narrow(self) -> T;
-    /// In the type of the density's factors.
-    fn fine(self) -> T::Fine;
-    /// `self/other`, or 1e6 where `other` is not positive.
-    fn slope(self, other: Self) -> Self;
-    /// Angle of the point (x, y) = (`other`, `self`), radians.
+    /// `a b + c d`.
+    fn sum_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
+    /// The same number with its digits in order again, where large terms may have cancelled.
+    fn normalize(self) -> Self;
+    /// `self * coefficient`.
+    fn times(self, coefficient: Self) -> Self;
+    /// The larger one of `self` and a number.
+    fn at_least(self, bound: T) -> Self;
+    /// Clamped to `-bound` and `bound`.
+    fn clamp(self, bound: f64) -> Self;
+    /// `a` where `mask` holds, else `b`.
+    fn select(mask: T::Mask, a: Self, b: Self) -> Self;
+    /// `self/other` for a positive `other`.
+    fn over(self, other: Self) -> Self;
+    /// Angle of the point (x, y) = (`other`, `self`), radians, for positive x.
+    fn atan(self, other: Self) -> Self;
+    /// Angle of any point (x, y) = (`other`, `self`), radians.
     fn atan2(self, other: Self) -> Self;
-    /// Natural exponential of a number that is not positive.
-    fn exp(self) -> T::Fine;
+    /// Rounded.
+    fn to_real(self) -> T;
+    /// In the type of the density's factors.
+    fn to_density(self) -> T::Density;
+    /// `2^-(u^2 + c^2)`.
+    fn gauss(u: Self, c: Self) -> T::Density;
+    /// `value` of a function at `self`, taken at the rounded `self`, corrected by the function's derivative there.
+    fn corrected(self, value: T::Density, derivative: impl FnOnce() -> T::Density) -> T::Density;
 }
 
 /// One number: what lanes are not.
-pub trait Scalar: Real<Wide = f64, Fine = f64> + Send + Sync {
+pub trait Scalar: Real<Mask = bool, Extended = f64, Plain = f64, Density = f64> + Send + Sync {
     /// `self < other`, as a branch.
     fn below(self, other: Self) -> bool;
     /// As float64, exactly.
     fn to_f64(self) -> f64;
-    /// Natural logarithm.
-    fn ln(self) -> Self;
-    /// Sine and cosine of an angle in radians.
-    fn sin_cos(self) -> (Self, Self);
 }
 
 macro_rules! scalar {
     ($float:ident, $small:expr) => {
         impl Real for $float {
             type Mask = bool;
-            type Wide = f64;
-            type Fine = f64;
+            type Extended = f64;
+            type Plain = f64;
+            type Density = f64;
             const MAX: Self = $float::MAX;
             const TINY: Self = $float::MIN_POSITIVE;
             const SMALL: Self = $small;
@@ -112,10 +143,13 @@ macro_rules! scalar {
             fn of(x: f64) -> Self {
                 x as Self
             }
-            fn rounded(fine: f64) -> Self {
-                fine as Self
+            fn coefficient(x: f64) -> Self {
+                x as Self
             }
-            fn fine(self) -> f64 {
+            fn from_density(x: f64) -> Self {
+                x as Self
+            }
+            fn to_density(self) -> f64 {
                 self.into()
             }
             fn lt(self, other: Self) -> bool {
@@ -139,42 +173,93 @@ macro_rules! scalar {
             fn sqrt(self) -> Self {
                 self.sqrt()
             }
+            fn recip(self) -> Self {
+                self.recip()
+            }
+            fn rsqrt(self) -> Self {
+                self.sqrt().recip()
+            }
             fn exp(self) -> Self {
                 self.exp()
             }
+            fn exp2_neg(self) -> Self {
+                (-self).exp2()
+            }
+            fn ln(self) -> Self {
+                self.ln()
+            }
             fn atan2(self, other: Self) -> Self {
                 self.atan2(other)
+            }
+            fn atan_over(self) -> Self {
+                let t = Real::max(self, $float::MIN_POSITIVE).sqrt();
+                t.atan() / t
+            }
+            fn sin_cos_turns(self) -> (Self, Self) {
+                ($float::of(std::f64::consts::TAU) * self).sin_cos()
+            }
+            fn sinc_cos(self) -> (Self, Self) {
+                let x = Real::max(self, $float::MIN_POSITIVE).sqrt();
+                let (sin, cos) = x.sin_cos();
+                (sin / x, cos)
             }
             fn ierfc(self) -> Self {
                 ierfc::$float(self)
             }
         }
 
-        impl Wide<$float> for f64 {
-            fn of(x: f64) -> Self {
+        impl Extended<$float> for f64 {
+            fn coefficient(x: f64) -> Self {
                 x
             }
-            fn widen(x: $float) -> Self {
+            fn from_real(x: $float) -> Self {
                 x.into()
+            }
+            fn truncate(x: f64) -> Self {
+                x
             }
             fn sum(a: $float, b: $float) -> Self {
                 f64::from(a) + f64::from(b)
             }
-            fn narrow(self) -> $float {
-                self as $float
+            fn sum_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+                a * b + c * d
             }
-            fn fine(self) -> f64 {
+            fn normalize(self) -> Self {
                 self
             }
-            fn slope(self, other: Self) -> Self {
-                if other > 0.0 { self / Real::max(other, f64::MIN_POSITIVE) } else { 1e6 }
+            fn times(self, coefficient: Self) -> Self {
+                self * coefficient
+            }
+            fn at_least(self, bound: $float) -> Self {
+                Real::max(self, bound.into())
+            }
+            fn clamp(self, bound: f64) -> Self {
+                Real::max(Real::min(self, bound), -bound)
+            }
+            fn select(mask: bool, a: Self, b: Self) -> Self {
+                if mask { a } else { b }
+            }
+            fn over(self, other: Self) -> Self {
+                self / other
+            }
+            fn atan(self, other: Self) -> Self {
+                self.atan2(other)
             }
             fn atan2(self, other: Self) -> Self {
                 // Nothing over a zero of whatever sign is no tilt, not half a turn.
                 self.atan2(other + 0.0)
             }
-            fn exp(self) -> f64 {
-                self.exp()
+            fn to_real(self) -> $float {
+                self as $float
+            }
+            fn to_density(self) -> f64 {
+                self
+            }
+            fn gauss(u: Self, c: Self) -> f64 {
+                (-(u * u + c * c)).exp2()
+            }
+            fn corrected(self, value: f64, _derivative: impl FnOnce() -> f64) -> f64 {
+                value
             }
         }
 
@@ -184,12 +269,6 @@ macro_rules! scalar {
             }
             fn to_f64(self) -> f64 {
                 self.into()
-            }
-            fn ln(self) -> Self {
-                self.ln()
-            }
-            fn sin_cos(self) -> (Self, Self) {
-                self.sin_cos()
             }
         }
     };
@@ -251,12 +330,6 @@ pub(crate) fn polynomial<const N: usize, T: Real>(coefficients: &[f32; N], x: T)
 
 /// A direction or normal, `[x, y, z]`.
 pub type Vec3<T> = [T; 3];
-
-/// A function of every coordinate. Unlike an array's own `map` it is inlined into lanes whatever the function.
-#[inline(always)]
-pub(crate) fn each<T: Copy, U>(v: [T; 3], f: impl Fn(T) -> U) -> [U; 3] {
-    [f(v[0]), f(v[1]), f(v[2])]
-}
 
 /// Scalar product.
 #[inline(always)]

@@ -13,18 +13,20 @@
 //! elementary functions is needed, and against the ideal, area-weighted Gaussian of slopes its weight
 //! is at most 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
-use crate::brdf::{Facets, GRAZING, Lobe, Parts, cosine, defined};
-use crate::real::{Vec3, Wide, dot};
+use crate::brdf::{Facets, GRAZING, Geometry, Lobe, Parts};
+use crate::real::{Vec3, dot};
+use crate::slopes::WIDTH;
 use crate::{Real, Scalar};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LOG2_E, PI};
 
 /// Keeps the facets' share positive where they hardly reflect.
-const FACET_ALBEDO_FLOOR: f64 = 0.01;
-/// Smallest vertical component of a normal that is told from 0.
-const LYING: f64 = 1e-4;
-/// Densities below which a draw is lost: rounding alone makes it, and its weight could be infinite.
-const LOST: f64 = 1e-37;
-/// Smallest tilt that has an azimuth.
-const LEVEL: f64 = 1e-18;
+pub const FACET_ALBEDO_FLOOR: f64 = 0.01;
+/// Vertical components of normals are clamped to this.
+const MIN_NORMAL_Z: f64 = 1e-4;
+/// Draws of a lower density are lost: rounding alone makes it, and their weight could be infinite.
+const MIN_PDF: f64 = 1e-37;
+/// Twice this is log2 e: `exp(-x^2/2) = 2^-(HALF_LOG2_E x^2)`.
+const HALF_LOG2_E: f64 = 0.5 * LOG2_E;
 
 /// A drawn direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,150 +43,127 @@ pub struct Sample<T> {
     pub whitecap: bool,
 }
 
-/// The wave normal with tangents along and across the wind.
-enum Frame<T> {
-    /// Of a level surface: cosine and sine of the wind's azimuth.
-    Level([T; 2]),
-    /// Along the wind, across it and along the normal.
-    Wave([Vec3<T>; 3]),
-}
-
-impl<T: Real> Frame<T> {
-    #[inline(always)]
-    fn to_local(&self, v: Vec3<T>) -> Vec3<T> {
-        match *self {
-            Self::Level([cos, sin]) => [v[0] * cos + v[1] * sin, v[1] * cos - v[0] * sin, v[2]],
-            Self::Wave([u, c, n]) => [dot(u, v), dot(c, v), dot(n, v)],
-        }
-    }
-
-    #[inline(always)]
-    fn to_world(&self, v: Vec3<T>) -> Vec3<T> {
-        match *self {
-            Self::Level([cos, sin]) => [v[0] * cos - v[1] * sin, v[0] * sin + v[1] * cos, v[2]],
-            Self::Wave([u, c, n]) => [0, 1, 2].map(|k| v[0] * u[k] + v[1] * c[k] + v[2] * n[k]),
-        }
-    }
-}
-
 /// What the source fixes of the facets' proposal.
 struct Proposal<T> {
+    /// 1/c.
+    inv_cos: T,
     /// Components of `z` that make `rD`.
     towards: [T; 2],
-    /// D.
-    d: T,
     /// v = 1/D.
     v: T,
+    /// How often phi(v) halves phi(0).
+    halvings: T,
     /// D phi(v).
     tail: T,
 }
 
 impl<T: Real> Facets<T> {
+    /// The axes along the wind, across it and along a wave normal: N x W and back, so that no digits are lost where the normal
+    /// leans far into the wind, nor all where it lies in it.
     #[inline(always)]
-    fn frame(&self, n: Option<Vec3<T>>) -> Frame<T> {
-        let (cw, sw) = (self.cos_wind.narrow(), self.sin_wind.narrow());
-        let Some(n) = n else { return Frame::Level([cw, sw]) };
-        // N x W and back: no digits are lost where the normal leans far into the wind, nor all where it lies in it.
-        let rise = T::max(n[2], T::of(LYING));
-        let c = [-rise * sw, rise * cw, n[0] * sw - n[1] * cw];
-        let length = T::max(dot(c, c).sqrt(), T::TINY);
-        let c = [c[0] / length, c[1] / length, c[2] / length];
+    pub(crate) fn frame(&self, n: Vec3<T>) -> [Vec3<T>; 3] {
+        let (zero, one) = (T::of(0.0), T::of(1.0));
+        let [cw, sw] = self.wind.to_world([one, zero]);
+        let rise = T::max(n[2], T::of(MIN_NORMAL_Z));
+        let c = [-(rise * sw), rise * cw, n[0] * sw - n[1] * cw];
+        let inverse = T::max(dot(c, c), T::TINY).rsqrt();
+        let c = [c[0] * inverse, c[1] * inverse, c[2] * inverse];
         let u = [c[1] * n[2] - c[2] * n[1], c[2] * n[0] - c[0] * n[2], c[0] * n[1] - c[1] * n[0]];
-        Frame::Wave([u, c, n])
+        [u, c, n]
     }
 
     /// For a source in the frame of the normal, as everything below.
     #[inline(always)]
     fn proposal(&self, i: Vec3<T>) -> Proposal<T> {
-        let c = T::max(i[2], T::of(GRAZING));
-        let towards = [i[0] * self.proposal_u / c, i[1] * self.proposal_c / c];
-        let d2 = towards[0] * towards[0] + towards[1] * towards[1];
-        let d = d2.sqrt();
-        let v = T::of(1.0) / T::max(d, T::of(LEVEL));
-        let tail = d * T::exp(T::of(-0.5) * v * v) * T::of(0.398_942_280_401_432_7);
-        Proposal { towards, d, v, tail }
+        let inv_cos = T::max(i[2], T::of(GRAZING)).recip();
+        let towards = [i[0] * self.proposal[0] * inv_cos, i[1] * self.proposal[1] * inv_cos];
+        let d2 = T::max(towards[0].mul_add(towards[0], towards[1] * towards[1]), T::TINY);
+        let v = d2.rsqrt();
+        let halvings = T::of(HALF_LOG2_E) * (v * v);
+        let tail = d2 * v * halvings.exp2_neg() * T::of(INV_SQRT_TAU);
+        Proposal { inv_cos, towards, v, halvings, tail }
     }
 
-    /// The tilt of a unit half vector, and the Jacobian `d omega_h/d tilt^2`.
+    /// Density, 1/sr, of the observer's direction among draws.
     #[inline(always)]
-    fn tilt(&self, h: Vec3<T>) -> ([T; 2], T) {
-        let z = T::max(h[2], T::of(LEVEL));
+    fn pdf<E>(&self, g: &Geometry<T, E>) -> T {
+        let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
+        let p = self.proposal(g.local_i);
+        let (tan2, inv_cos2) = (T::from_density(g.tan2), T::from_density(g.inv_cos2));
+        // Tilts are slopes, or the angle from the normal with its azimuth; the Jacobian is d tilt^2/d omega_h.
+        let (tilt_over_slope, jacobian) = if self.slope_measure {
+            (one, inv_cos2 * inv_cos2)
+        } else {
+            let over = tan2.atan_over();
+            (over, inv_cos2 * over)
+        };
+        let z = [g.slope[0] / self.proposal[0], g.slope[1] / self.proposal[1]];
+        let z2 = tilt_over_slope * tilt_over_slope * z[0].mul_add(z[0], z[1] * z[1]);
+        let slanted = g.slope[0].mul_add(g.local_i[0], g.slope[1] * g.local_i[1]) * p.inv_cos;
+        // The area shown over its value for a level facet, and how far r is beyond v.
+        let shown = T::max(one + slanted, T::SMALL);
+        let beyond = slanted.mul_add(tilt_over_slope, -one);
+        let halvings = T::of(HALF_LOG2_E) * z2;
+        let gauss = halvings.exp2_neg() * T::min(shown, two);
+        let tail = T::max((-two * p.halvings).mul_add(beyond, halvings), zero).exp2_neg() * beyond;
+        let norm = T::of(8.0 * PI) * self.proposal[0] * self.proposal[1] * (one + p.tail) * shown;
+        T::min((gauss + T::select(zero.lt(beyond), tail, zero)) * jacobian * p.inv_cos / norm, T::MAX)
+    }
+
+    /// What a tilt is to be multiplied by for the horizontal part of its unit half vector, the vertical part, and whether there
+    /// is one: a tilt angle may pass the horizontal.
+    #[inline(always)]
+    fn half_vector(&self, tilt2: T) -> (T, T, T::Mask) {
+        let one = T::of(1.0);
         if self.slope_measure {
-            return ([h[0] / z, h[1] / z], z * z * z);
+            let cos = (one + tilt2).rsqrt();
+            return (cos, cos, T::lt(T::of(0.0), one));
         }
-        let sin = T::max((h[0] * h[0] + h[1] * h[1]).sqrt(), T::of(LEVEL));
-        let angle = sin.atan2(z);
-        ([h[0] * angle / sin, h[1] * angle / sin], sin / angle)
+        let (sinc, cos) = tilt2.sinc_cos();
+        (sinc, cos, T::lt(tilt2, T::of(FRAC_PI_2 * FRAC_PI_2)))
     }
 
-    /// Density, 1/sr, of the observer's direction that makes `h` with the source's, both added up and
-    /// not of unit length.
+    /// A half vector, zero where the draw is lost, for a number that chooses between the two kinds of tilt, the first of two
+    /// more, and the second with sine and cosine of `turns` turns of what [`Facets::azimuth`] chose.
     #[inline(always)]
-    fn pdf(&self, i: Vec3<T>, h: Vec3<T>) -> T {
-        let (zero, one, two, half) = (T::of(0.0), T::of(1.0), T::of(2.0), T::of(0.5));
-        let length = T::max(dot(h, h).sqrt(), T::TINY);
-        let h = [h[0] / length, h[1] / length, h[2] / length];
-        let p = self.proposal(i);
-        let (tilt, jacobian) = self.tilt(h);
-        let z = [tilt[0] / self.proposal_u, tilt[1] / self.proposal_c];
-        let z2 = z[0] * z[0] + z[1] * z[1];
-        let beyond = z[0] * p.towards[0] + z[1] * p.towards[1] - one;
-        // The area shown over its value for a level facet; i.H, not |i + o|/2, agrees with the tilts
-        // to the last digit at grazing angles.
-        let cos = dot(i, h);
-        let shown = cos / T::max(h[2] * T::max(i[2], T::of(GRAZING)), T::TINY);
-        let gauss = T::exp(-half * z2) * T::min(shown, two);
-        let tail = T::select(
-            T::lt(zero, beyond),
-            beyond * T::exp(T::min(p.v * p.v * beyond - half * z2, zero)),
-            zero,
-        );
-        let norm = T::of(4.0 * std::f64::consts::TAU) * self.proposal_u * self.proposal_c * (one + p.tail);
-        let pdf = (gauss + tail) / (norm * T::max(cos * jacobian, T::TINY));
-        T::select(T::lt(zero, cos), T::min(pdf, T::MAX), zero)
+    fn sample_half(&self, i: Vec3<T>, p: &Proposal<T>, u: [T; 2], draw: Draw<T>) -> (Vec3<T>, T::Mask) {
+        let (zero, one) = (T::of(0.0), T::of(1.0));
+        let Draw { in_tail, rest, sin, cos } = draw;
+        // Box-Muller around the source's azimuth; in the tail r is Rayleigh beyond v.
+        let first = neg_2_log1m(u[0]).sqrt();
+        let r = T::select(in_tail, p.v + first, first * cos);
+        let q = T::select(in_tail, neg_2_log1m(u[1]).sqrt() * cos, first * sin);
+        let overhead = T::lt(T::of(MAX_V), p.v);
+        let e = [T::select(overhead, one, p.towards[0] * p.v), T::select(overhead, zero, p.towards[1] * p.v)];
+        let tilt =
+            [e[0].mul_add(r, -(e[1] * q)) * self.proposal[0], e[1].mul_add(r, e[0] * q) * self.proposal[1]];
+        let (over, vertical, valid) = self.half_vector(tilt[0].mul_add(tilt[0], tilt[1] * tilt[1]));
+        let h = [tilt[0] * over, tilt[1] * over];
+        // The opposite tilt with probability b/(a + b), by the areas that the two show.
+        let (level, slanted) = (vertical * i[2], h[0].mul_add(i[0], h[1] * i[1]));
+        let (a, b) = (T::max(level + slanted, zero), T::max(level - slanted, zero));
+        let opposite = !in_tail & T::lt(rest * (a + b), b);
+        ([T::select(opposite, -h[0], h[0]), T::select(opposite, -h[1], h[1]), vertical], valid)
     }
 }
 
-impl<T: Scalar> Facets<T> {
-    /// The half vector of a tilt; zero where a tilt angle passes the horizontal.
-    #[inline(always)]
-    fn half_vector(&self, [u, c]: [T; 2]) -> Vec3<T> {
-        let (zero, one) = (T::of(0.0), T::of(1.0));
-        let tilt2 = u * u + c * c;
-        if self.slope_measure {
-            let cos = one / (one + tilt2).sqrt();
-            return [u * cos, c * cos, cos];
-        }
-        let tilt = T::max(tilt2.sqrt(), T::of(LEVEL));
-        let (sin, cos) = tilt.sin_cos();
-        let valid = T::lt(tilt, T::of(std::f64::consts::FRAC_PI_2));
-        [u * sin / tilt, c * sin / tilt, cos].map(|x| T::select(valid, x, zero))
-    }
+/// Which kind of tilt is drawn, what is left of the number that chose, and the azimuth around the source's.
+struct Draw<T: Real> {
+    in_tail: T::Mask,
+    rest: T,
+    sin: T,
+    cos: T,
+}
 
-    /// A half vector, or zero where the draw is lost.
-    #[inline(always)]
-    fn sample_half(&self, i: Vec3<T>, choice: T, u: [T; 2]) -> Vec3<T> {
-        let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
-        let p = self.proposal(i);
-        let scaled = choice * (one + p.tail);
-        let in_tail = T::lt(scaled, p.tail);
-        let rest = T::select(in_tail, scaled / T::max(p.tail, T::TINY), scaled - p.tail);
-        let radius2 = |x: T| T::max(-two * T::max(one - x, T::TINY).ln(), zero);
-        let (sin, cos) = (T::of(std::f64::consts::TAU) * T::select(in_tail, rest, u[1])).sin_cos();
-        // Box-Muller around the source's azimuth; in the tail r is Rayleigh beyond v.
-        let first = radius2(u[0]).sqrt();
-        let overhead = T::lt(p.d, T::of(LEVEL));
-        let r = T::select(in_tail, p.v + first, first * cos);
-        let q = T::select(in_tail, radius2(u[1]).sqrt() * cos, first * sin);
-        let e = [T::select(overhead, one, p.towards[0] * p.v), T::select(overhead, zero, p.towards[1] * p.v)];
-        let h = self
-            .half_vector([(e[0] * r - e[1] * q) * self.proposal_u, (e[1] * r + e[0] * q) * self.proposal_c]);
-        // The opposite tilt with probability b/(a + b), by the areas that the two show.
-        let (level, slanted) = (h[2] * i[2], h[0] * i[0] + h[1] * i[1]);
-        let (a, b) = (T::max(level + slanted, zero), T::max(level - slanted, zero));
-        let turn = T::lt(T::select(in_tail, one, rest * (a + b)), T::select(in_tail, zero, b));
-        [T::select(turn, -h[0], h[0]), T::select(turn, -h[1], h[1]), h[2]]
-    }
+/// phi(0), Gauss's density.
+const INV_SQRT_TAU: f64 = 0.398_942_280_401_432_7;
+/// Beyond this v the source is overhead and has no azimuth.
+const MAX_V: f64 = 1e15;
+
+/// `-2 ln(1 - u)`, finite, for u from 0 to 1.
+#[inline(always)]
+fn neg_2_log1m<T: Real>(u: T) -> T {
+    T::max(T::of(-2.0) * T::max(T::of(1.0) - u, T::TINY).ln(), T::of(0.0))
 }
 
 impl Facets<f64> {
@@ -196,18 +175,25 @@ impl Facets<f64> {
         for a in -STEPS..=STEPS {
             for b in 0..=STEPS {
                 let [u, c] = [a, b].map(|k| 6.0 * f64::from(k) / f64::from(STEPS));
-                let h = self.half_vector([u * self.sigma_u, c * self.sigma_c]);
-                if h[2] < 0.05 {
+                let tilt = [u * self.sigma_u, c * self.sigma_c];
+                let tilt2 = tilt[0] * tilt[0] + tilt[1] * tilt[1];
+                let (over, vertical, valid) = self.half_vector(tilt2);
+                if vertical < 0.05 || !valid {
                     continue;
                 }
+                let h = [tilt[0] * over, tilt[1] * over, vertical];
                 // What the density gives to the facets of this tilt, over d tilt^2, and at worst, towards
                 // a grazing source, over the area that the proposal takes them to show.
                 let axis = |t: f64, sigma: f64| if self.slope_measure { t } else { t.atan() } / sigma;
                 let [x, y] = [axis(h[0] / h[2], self.sigma_u), axis(h[1] / h[2], self.sigma_c)];
-                let (tilt, jacobian) = self.tilt(h);
-                let slope_over_tilt = (h[0].hypot(h[1]) / h[2] + 1e-9) / (tilt[0].hypot(tilt[1]) + 1e-9);
-                let density =
-                    self.tilt_density(-x, y, (h[2] * h[2]).recip()) * h[2] * jacobian * slope_over_tilt;
+                // d omega_h/d tilt^2.
+                let jacobian = if self.slope_measure { vertical.powi(3) } else { over };
+                let slope_over_tilt = (h[0].hypot(h[1]) / h[2] + 1e-9) / (tilt2.sqrt() + 1e-9);
+                let density = self.scale
+                    * self.tilt_density(x / WIDTH, y / WIDTH, (h[2] * h[2]).recip())
+                    * h[2]
+                    * jacobian
+                    * slope_over_tilt;
                 wanted.push((density.ln(), 0.5 * (u * u + c * c)));
             }
         }
@@ -220,24 +206,12 @@ impl Facets<f64> {
 }
 
 impl<T: Real> Lobe<T> {
-    /// Probabilities of drawing from the facets and from the whitecaps: by what each reflects, roughly.
+    /// What facets and whitecaps reflect, roughly: the shares of draws from them.
     #[inline(always)]
-    fn shares(&self, cos: T, parts: Parts) -> [T; 2] {
-        let (zero, one) = (T::of(0.0), T::of(1.0));
-        match parts {
-            Parts { whitecaps: false, .. } => [one, zero],
-            Parts { facets: false, .. } => [zero, one],
-            _ => {
-                let albedo =
-                    T::rounded(self.facets.reflectance.schlick(cos.fine())) + T::of(FACET_ALBEDO_FLOOR);
-                let facets = self.smooth_fraction * albedo;
-                let whitecaps = T::of(std::f64::consts::PI) * self.whitecap_brdf * self.whitecap_fraction;
-                {
-                    let both = T::max(facets + whitecaps, T::TINY);
-                    [facets / both, whitecaps / both]
-                }
-            }
-        }
+    fn albedos(&self, cos: T) -> [T; 2] {
+        let rho = T::from_density(self.facets.reflectance.schlick(cos.to_density()));
+        let facets = self.smooth_fraction * (rho + T::of(FACET_ALBEDO_FLOOR));
+        [facets, T::of(PI) * self.whitecap_brdf * self.whitecap_fraction]
     }
 
     /// Density of the observer's direction `o` among draws for the source `i`, 1/sr.
@@ -249,26 +223,68 @@ impl<T: Real> Lobe<T> {
     /// The same where only some parts are drawn from.
     #[inline(always)]
     pub fn pdf_parts(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
-        let (zero, n) = (T::of(0.0), n.into());
         if !parts.facets && !parts.whitecaps {
-            return zero;
+            return T::of(0.0);
         }
-        let (ci, cr) = (cosine(i, n), cosine(o, n));
-        let [facets, whitecaps] = self.shares(ci, parts);
-        let mut pdf = whitecaps * cr * T::of(std::f64::consts::FRAC_1_PI);
-        if parts.facets {
-            let frame = self.facets.frame(n);
-            // An oblique wind turns a sum of parts that nearly cancel.
-            let (x, y, z) = (T::Wide::sum(i[0], o[0]), T::Wide::sum(i[1], o[1]), T::Wide::sum(i[2], o[2]));
-            let h = if n.is_none() {
-                let [u, c] = self.facets.wind_frame(x, y);
-                [u.narrow(), c.narrow(), z.narrow()]
-            } else {
-                frame.to_local([x.narrow(), y.narrow(), z.narrow()])
-            };
-            pdf = pdf + facets * self.facets.pdf(frame.to_local(i), h);
+        // An oblique wind turns a sum of parts that nearly cancel: tilts to the last digit cost scalars nothing.
+        let g = self.facets.geometry::<T::Plain>(i, o, n.into());
+        let diffuse = || g.cos[1] * T::of(FRAC_1_PI);
+        g.above_horizon(match parts {
+            Parts { whitecaps: false, .. } => self.facets.pdf(&g),
+            Parts { facets: false, .. } => diffuse(),
+            _ => {
+                let [facets, whitecaps] = self.albedos(g.cos[0]);
+                let both = facets.mul_add(self.facets.pdf(&g), whitecaps * diffuse());
+                both / T::max(facets + whitecaps, T::TINY)
+            }
+        })
+    }
+
+    /// A direction to the observer for the source `i`, with three uniform numbers of [0, 1), and whether it was drawn from the
+    /// whitecaps; zero where nothing could be drawn.
+    #[inline(always)]
+    pub(crate) fn draw(&self, i: Vec3<T>, n: Option<Vec3<T>>, u: [T; 3], parts: Parts) -> (Vec3<T>, T::Mask) {
+        let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
+        if !parts.facets {
+            let (sin, cos) = u[2].sin_cos_turns();
+            return (cosine_direction(n, u[1], sin, cos), T::lt(zero, one));
         }
-        defined(i, o, [ci, cr], T::select(T::lt(zero, ci) & T::lt(zero, cr), pdf, zero))
+        let frame = n.map(|n| self.facets.frame(n));
+        let local = match &frame {
+            Some(axes) => [dot(axes[0], i), dot(axes[1], i), dot(axes[2], i)],
+            None => self.facets.wind.vector_to_wind(i),
+        };
+        // u[0] over the facets' share.
+        let (mut choice, mut whitecap) = (u[0], T::lt(one, zero));
+        if parts.whitecaps {
+            let [facets, whitecaps] = self.albedos(local[2]);
+            choice = u[0] * (facets + whitecaps) / T::max(facets, T::TINY);
+            whitecap = !T::lt(choice, one);
+            choice = T::min(choice, one);
+        }
+        let p = self.facets.proposal(local);
+        let scaled = choice * (one + p.tail);
+        let in_tail = T::lt(scaled, p.tail);
+        let rest = T::select(in_tail, scaled / T::max(p.tail, T::TINY), scaled - p.tail);
+        // Tails take their azimuth from the first number, all others from the last.
+        let from_rest = if parts.whitecaps { in_tail & !whitecap } else { in_tail };
+        let (sin, cos) = T::select(from_rest, rest, u[2]).sin_cos_turns();
+        let (h, valid) = self.facets.sample_half(local, &p, [u[1], u[2]], Draw { in_tail, rest, sin, cos });
+        let h = match &frame {
+            Some([x, y, z]) => [0, 1, 2].map(|k| h[0].mul_add(x[k], h[1].mul_add(y[k], h[2] * z[k]))),
+            None => {
+                let [x, y] = self.facets.wind.to_world([h[0], h[1]]);
+                [x, y, h[2]]
+            }
+        };
+        // The source mirrored by the half vector.
+        let c = two * dot(i, h);
+        let mut o = [0, 1, 2].map(|k| T::select(valid, c.mul_add(h[k], -i[k]), zero));
+        if parts.whitecaps {
+            let diffuse = cosine_direction(n, u[1], sin, cos);
+            o = [0, 1, 2].map(|k| T::select(whitecap, diffuse[k], o[k]));
+        }
+        (o, whitecap)
     }
 }
 
@@ -287,39 +303,28 @@ impl<T: Scalar> Lobe<T> {
         u: [T; 3],
         parts: Parts,
     ) -> Sample<T> {
-        let (zero, one, two, n) = (T::of(0.0), T::of(1.0), T::of(2.0), n.into());
-        let [share, _] = self.shares(cosine(i, n), parts);
-        let whitecap = !u[0].below(share);
-        let direction = if whitecap {
-            cosine_direction(n, [u[1], u[2]])
-        } else {
-            let choice = T::min(u[0] / T::max(share, T::TINY), one);
-            let frame = self.facets.frame(n);
-            let h = frame.to_world(self.facets.sample_half(frame.to_local(i), choice, [u[1], u[2]]));
-            let c = two * dot(i, h);
-            [c * h[0] - i[0], c * h[1] - i[1], c * h[2] - i[2]]
-        };
+        let (zero, n) = (T::of(0.0), n.into());
+        let (direction, whitecap) = self.draw(i, n, u, parts);
         let pdf = self.pdf_parts(i, direction, n, parts);
-        if pdf.below(T::of(LOST)) {
+        if pdf.below(T::of(MIN_PDF)) {
             return Sample { direction: [zero; 3], pdf: zero, f: zero, whitecap };
         }
         Sample { direction, pdf, f: self.eval_parts(i, direction, n, parts), whitecap }
     }
 }
 
-/// A direction about `n`, in proportion to its cosine.
+/// A direction about `n`, in proportion to its cosine, of a number and of sine and cosine of its azimuth.
 #[inline(always)]
-fn cosine_direction<T: Scalar>(n: Option<Vec3<T>>, u: [T; 2]) -> Vec3<T> {
+fn cosine_direction<T: Real>(n: Option<Vec3<T>>, u: T, sin: T, cos: T) -> Vec3<T> {
     let (zero, one) = (T::of(0.0), T::of(1.0));
-    let (sin, cos) = (T::of(std::f64::consts::TAU) * u[1]).sin_cos();
-    let r = u[0].sqrt();
-    let z = T::max(one - u[0], zero).sqrt();
+    let r = u.sqrt();
+    let z = T::max(one - u, zero).sqrt();
     let (x, y) = (r * cos, r * sin);
     let Some(n) = n else { return [x, y, z] };
     // Orthonormal tangents of a normal that points up.
-    let a = -one / (one + n[2]);
+    let a = -(one + n[2]).recip();
     let b = n[0] * n[1] * a;
-    let s = [one + n[0] * n[0] * a, b, -n[0]];
-    let t = [b, one + n[1] * n[1] * a, -n[1]];
-    [x * s[0] + y * t[0] + z * n[0], x * s[1] + y * t[1] + z * n[1], x * s[2] + y * t[2] + z * n[2]]
+    let s = [(n[0] * n[0]).mul_add(a, one), b, -n[0]];
+    let t = [b, (n[1] * n[1]).mul_add(a, one), -n[1]];
+    [0, 1, 2].map(|k| x.mul_add(s[k], y.mul_add(t[k], z * n[k])))
 }

@@ -15,8 +15,7 @@ pub fn sigma(w10: f64) -> f64 {
 /// along the direction (times sqrt 2) times the sine.
 #[inline(always)]
 pub fn hidden<T: Real>(cos: T, spread: T) -> T {
-    // Beyond nu = 26 ierfc is 0 in float64; the bound keeps 0 x infinity away.
-    let nu = T::min(cos / T::max(spread, T::TINY), T::of(26.0));
+    let nu = cos / T::max(spread, T::SMALL);
     T::of(0.5) * spread * nu.ierfc()
 }
 

@@ -63,7 +63,7 @@ fn configuration() {
         let sea =
             Parameters { wind, footprint: Some(u[1] + 1e-3), ..Parameters::default() }.configure().unwrap();
         let f = &sea.local_lobe().facets;
-        vec![sea.wind.friction_velocity, f.sigma_u, f.sigma_c, f.proposal_u, sea.whitecap_fraction]
+        vec![sea.wind.friction_velocity, f.sigma_u, f.sigma_c, f.proposal[0], sea.whitecap_fraction]
     });
 }
 

@@ -65,7 +65,7 @@ fn sea(lines: &mut Lines, p: Parameters) -> Sea {
         "wind_direction": p.wind_direction, "ior": water.ior, "exact": p.fresnel == Fresnel::Exact,
         "slope": p.slope_measure == SlopeMeasure::Slope, "gram_charlier": p.gram_charlier, "shadowing": p.shadowing,
         "whitecaps": p.whitecaps, "wavelength": p.wavelength,
-        "stretch": water.local_lobe().facets.proposal_u / water.local_lobe().facets.sigma_u,
+        "stretch": water.local_lobe().facets.proposal[0] / water.local_lobe().facets.sigma_u,
     }));
     Sea { id, water }
 }
@@ -164,14 +164,14 @@ fn pair(lines: &mut Lines, water: &Water, n: Vec3<f64>) -> [Vec3<f64>; 2] {
         let psi = lines.uniform(0.0, TAU);
         let tilts = [r * psi.cos() * f.sigma_u, r * psi.sin() * f.sigma_c];
         let tilts = if f.slope_measure { tilts.map(f64::atan) } else { tilts };
-        let normal = [n[0] * f.cos_wind + n[1] * f.sin_wind, n[1] * f.cos_wind - n[0] * f.sin_wind];
+        let normal = [n[0] * f.wind.cos + n[1] * f.wind.sin, n[1] * f.wind.cos - n[0] * f.wind.sin];
         let angles = [0, 1].map(|axis| normal[axis].atan2(n[2]) + tilts[axis]);
         if angles.iter().any(|angle| angle.abs() >= FRAC_PI_2) {
             continue;
         }
         let [tu, tc] = angles.map(f64::tan);
         let z = 1.0 / (1.0 + tu * tu + tc * tc).sqrt();
-        let h = [(tu * f.cos_wind - tc * f.sin_wind) * z, (tu * f.sin_wind + tc * f.cos_wind) * z, z];
+        let h = [(tu * f.wind.cos - tc * f.wind.sin) * z, (tu * f.wind.sin + tc * f.wind.cos) * z, z];
         let c = dot(i, h);
         let o = [0, 1, 2].map(|k| 2.0 * c * h[k] - i[k]);
         let lowest = crate::GRAZING.to_radians().cos();

@@ -4,7 +4,7 @@ use crate::Lines;
 use prob_water::optics::{Fresnel, Reflectance, pure_water};
 use prob_water::real::{IERFC, IERFC_END};
 use prob_water::shadowing::hidden;
-use prob_water::slopes::{gram_charlier, skewness, variances};
+use prob_water::slopes::{GramCharlier, WIDTH, skewness, variances};
 use prob_water::wind::{friction_velocity, highest_wind_speed, wind_speed};
 use prob_water::{Real, Wind, whitecap};
 use serde_json::json;
@@ -40,21 +40,24 @@ fn slopes(lines: &mut Lines) {
 
     let (r, psi) = (lines.uniform(0.0, REACH).sqrt(), lines.uniform(0.0, TAU));
     let x = [c21, c03, r * psi.cos(), r * psi.sin()];
-    let p = |[a, b, u, c]: [f64; 4]| gram_charlier(a, b, u, c, false);
-    lines.row("gram_charlier", json!(x), json!({"float64": [p(x)]}));
-    let x = x.map(|x| x as f32);
-    let p = |[a, b, u, c]: [f32; 4]| gram_charlier(a, b, u, c, false);
-    lines.row("gram_charlier", json!(x.map(f64::from)), json!({"float32": [f64::from(p(x))]}));
+    let polynomial = |[c21, c03, ..]: [f64; 4]| GramCharlier::new([c21, c03], false);
+    let p = polynomial(x).eval(-x[2] / WIDTH, x[3] / WIDTH);
+    lines.row("gram_charlier", json!(x), json!({"float64": [p]}));
+    // In float32, of tilts that are float32 numbers in widths.
+    let [u, c] = [-x[2] / WIDTH, x[3] / WIDTH].map(|tilt| tilt as f32);
+    let rounded = [x[0], x[1], -f64::from(u) * WIDTH, f64::from(c) * WIDTH];
+    let p = polynomial(rounded).cast::<f32>().eval(u, c);
+    lines.row("gram_charlier", json!(rounded), json!({"float32": [f64::from(p)]}));
 }
 
 fn reflectance(lines: &mut Lines) {
     let ior = lines.uniform(1.1, 2.0);
     let cos = lines.zenith().cos();
     for (stage, fresnel) in [("schlick", Fresnel::Schlick), ("fresnel", Fresnel::Exact)] {
-        let rho = Reflectance::<f64>::new(ior, fresnel).eval(cos);
+        let rho = Reflectance::new(ior, fresnel).eval(cos);
         lines.row(stage, json!([ior, cos]), json!({"float64": [rho]}));
         let single = cos as f32;
-        let rho = Reflectance::<f32>::new(ior, fresnel).eval(single);
+        let rho = Reflectance::new(ior, fresnel).cast::<f32>().eval(single);
         lines.row(stage, json!([ior, f64::from(single)]), json!({"float32": [f64::from(rho)]}));
     }
     let wavelength = lines.decades(0.2, 200.0);

@@ -160,8 +160,8 @@ fn deviations(water: &Water, [i, o, n]: &Row) -> f64 {
             SlopeMeasure::Slope => f64::INFINITY,
         }
     };
-    let u = tilt([f.cos_wind, f.sin_wind]) / f.sigma_u;
-    let c = tilt([-f.sin_wind, f.cos_wind]) / f.sigma_c;
+    let u = tilt([f.wind.cos, f.wind.sin]) / f.sigma_u;
+    let c = tilt([-f.wind.sin, f.wind.cos]) / f.sigma_c;
     u * u + c * c
 }
 

@@ -2,7 +2,7 @@
 
 use crate::draw::{Draw, Vec3};
 use prob_water::Water;
-use prob_water::brdf::Facets;
+use prob_water::brdf::WindAxes;
 use prob_water::real::dot;
 
 /// Rows of a block.
@@ -81,7 +81,7 @@ fn normal(draw: &mut Draw, water: &Water, i: Vec3) -> Vec3 {
         }
         13 if draw.pick(4) == 0 => {
             // Upright water, facing the wind or anywhere.
-            let Facets { cos_wind, sin_wind, .. } = water.local_lobe().facets;
+            let WindAxes { cos: cos_wind, sin: sin_wind, .. } = water.local_lobe().facets.wind;
             let [x, y, _] = if draw.flag() { draw.at(90.0) } else { [cos_wind, sin_wind, 0.0] };
             [x, y, draw.one_of(&[1e-45, 1e-38, 1e-20, 1e-9])]
         }
@@ -112,11 +112,11 @@ fn specular(draw: &mut Draw, water: &Water, i: Vec3, n: Vec3) -> Vec3 {
         _ => 7.5 * draw.between(0.0, 1.0).sqrt(),
     };
     let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
-    let along = |x: f64, y: f64| [x * f.cos_wind + y * f.sin_wind, y * f.cos_wind - x * f.sin_wind];
+    let along = |x: f64, y: f64| [x * f.wind.cos + y * f.wind.sin, y * f.wind.cos - x * f.wind.sin];
     let [nu, nc] = along(n[0], n[1]);
     let (u, c) = ((nu.atan2(n[2]) + reach * sin * f.sigma_u), (nc.atan2(n[2]) + reach * cos * f.sigma_c));
     let (u, c) = (u.clamp(-1.57, 1.57).tan(), c.clamp(-1.57, 1.57).tan());
-    let h = normalized([u * f.cos_wind - c * f.sin_wind, u * f.sin_wind + c * f.cos_wind, 1.0]);
+    let h = normalized([u * f.wind.cos - c * f.wind.sin, u * f.wind.sin + c * f.wind.cos, 1.0]);
     let twice = 2.0 * dot(i, h);
     normalized([0, 1, 2].map(|k| twice * h[k] - i[k]))
 }

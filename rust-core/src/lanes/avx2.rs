@@ -1,9 +1,10 @@
 //! AVX2 and FMA.
 
-use super::Vector;
+use super::vector::INV_SQRT_2;
+use super::{Arithmetic, Vector};
 use std::arch::x86_64::*;
 use std::mem::transmute;
-use std::ops::BitAnd;
+use std::ops::{BitAnd, BitOr, Not};
 
 /// Calls what [`super::Level::run`] has made sure of.
 macro_rules! intrinsic {
@@ -24,6 +25,22 @@ impl BitAnd for Avx2 {
     }
 }
 
+impl BitOr for Avx2 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, b: Self) -> Self {
+        intrinsic!(_mm256_or_ps(self.0, b.0))
+    }
+}
+
+impl Not for Avx2 {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        intrinsic!(_mm256_xor_ps(self.0, ALL.0))
+    }
+}
+
 const fn splat(x: f32) -> Avx2 {
     // SAFETY: eight float32 numbers have the same bytes as the vector of them.
     Avx2(unsafe { transmute::<[f32; 8], __m256>([x; 8]) })
@@ -31,10 +48,11 @@ const fn splat(x: f32) -> Avx2 {
 
 /// A bit for the sign in every lane.
 const SIGN: Avx2 = splat(-0.0);
+/// Every bit.
+const ALL: Avx2 = splat(f32::from_bits(u32::MAX));
 
-impl Vector for Avx2 {
+impl Arithmetic for Avx2 {
     type Mask = Self;
-    const WIDTH: usize = 8;
     const MAX: Self = splat(f32::MAX);
     const TINY: Self = splat(f32::MIN_POSITIVE);
     const SMALL: Self = splat(1e-9);
@@ -42,15 +60,6 @@ impl Vector for Avx2 {
     #[inline(always)]
     fn splat(x: f32) -> Self {
         intrinsic!(_mm256_set1_ps(x))
-    }
-    #[inline(always)]
-    fn load(from: &[f32]) -> Self {
-        intrinsic!(_mm256_loadu_ps(from[..8].as_ptr()))
-    }
-    #[inline(always)]
-    fn store(self, to: &mut [f32]) {
-        // SAFETY: as above; the slice has eight places.
-        unsafe { _mm256_storeu_ps(to[..8].as_mut_ptr(), self.0) }
     }
     #[inline(always)]
     fn add(self, b: Self) -> Self {
@@ -109,15 +118,36 @@ impl Vector for Avx2 {
         intrinsic!(_mm256_round_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(self.0))
     }
     #[inline(always)]
-    fn scale(self, n: Self) -> Self {
+    fn ldexp(self, n: Self) -> Self {
         intrinsic!({
             let exponent = _mm256_add_epi32(_mm256_cvtps_epi32(n.0), _mm256_set1_epi32(127));
             _mm256_mul_ps(self.0, _mm256_castsi256_ps(_mm256_slli_epi32::<23>(exponent)))
         })
     }
     #[inline(always)]
-    fn turn(self, sign: Self) -> Self {
+    fn flip_sign_by(self, sign: Self) -> Self {
         intrinsic!(_mm256_xor_ps(self.0, _mm256_and_ps(sign.0, SIGN.0)))
+    }
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        intrinsic!({
+            let bits = _mm256_sub_epi32(_mm256_castps_si256(self.0), _mm256_set1_epi32(INV_SQRT_2));
+            _mm256_cvtepi32_ps(_mm256_srai_epi32::<23>(bits))
+        })
+    }
+}
+
+impl Vector for Avx2 {
+    const WIDTH: usize = 8;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        intrinsic!(_mm256_loadu_ps(from[..8].as_ptr()))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        // SAFETY: as above; the slice has eight places.
+        unsafe { _mm256_storeu_ps(to[..8].as_mut_ptr(), self.0) }
     }
     #[inline(always)]
     fn phases(phase: &[f64], k_x: &[f64], k_y: &[f64], [x, y]: [f64; 2]) -> Self {

@@ -1,6 +1,7 @@
 //! AVX-512, the parts F and DQ.
 
-use super::Vector;
+use super::vector::INV_SQRT_2;
+use super::{Arithmetic, Vector};
 use std::arch::x86_64::*;
 use std::mem::transmute;
 
@@ -23,9 +24,8 @@ const fn splat(x: f32) -> Avx512 {
 /// A bit for the sign in every lane.
 const SIGN: Avx512 = splat(-0.0);
 
-impl Vector for Avx512 {
+impl Arithmetic for Avx512 {
     type Mask = __mmask16;
-    const WIDTH: usize = 16;
     const MAX: Self = splat(f32::MAX);
     const TINY: Self = splat(f32::MIN_POSITIVE);
     const SMALL: Self = splat(1e-9);
@@ -33,15 +33,6 @@ impl Vector for Avx512 {
     #[inline(always)]
     fn splat(x: f32) -> Self {
         intrinsic!(_mm512_set1_ps(x))
-    }
-    #[inline(always)]
-    fn load(from: &[f32]) -> Self {
-        intrinsic!(_mm512_loadu_ps(from[..16].as_ptr()))
-    }
-    #[inline(always)]
-    fn store(self, to: &mut [f32]) {
-        // SAFETY: as above; the slice has sixteen places.
-        unsafe { _mm512_storeu_ps(to[..16].as_mut_ptr(), self.0) }
     }
     #[inline(always)]
     fn add(self, b: Self) -> Self {
@@ -101,15 +92,36 @@ impl Vector for Avx512 {
         intrinsic!(_mm512_roundscale_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(self.0))
     }
     #[inline(always)]
-    fn scale(self, n: Self) -> Self {
+    fn ldexp(self, n: Self) -> Self {
         intrinsic!({
             let exponent = _mm512_add_epi32(_mm512_cvtps_epi32(n.0), _mm512_set1_epi32(127));
             _mm512_mul_ps(self.0, _mm512_castsi512_ps(_mm512_slli_epi32::<23>(exponent)))
         })
     }
     #[inline(always)]
-    fn turn(self, sign: Self) -> Self {
+    fn flip_sign_by(self, sign: Self) -> Self {
         intrinsic!(_mm512_xor_ps(self.0, _mm512_and_ps(sign.0, SIGN.0)))
+    }
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        intrinsic!({
+            let bits = _mm512_sub_epi32(_mm512_castps_si512(self.0), _mm512_set1_epi32(INV_SQRT_2));
+            _mm512_cvtepi32_ps(_mm512_srai_epi32::<23>(bits))
+        })
+    }
+}
+
+impl Vector for Avx512 {
+    const WIDTH: usize = 16;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        intrinsic!(_mm512_loadu_ps(from[..16].as_ptr()))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        // SAFETY: as above; the slice has sixteen places.
+        unsafe { _mm512_storeu_ps(to[..16].as_mut_ptr(), self.0) }
     }
     #[inline(always)]
     fn phases(phase: &[f64], k_x: &[f64], k_y: &[f64], [x, y]: [f64; 2]) -> Self {

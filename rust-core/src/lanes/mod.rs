@@ -1,20 +1,20 @@
 //! Many numbers at once: the closed form and the sums of waves in the vectors of the processor at hand.
 //!
 //! [`Lanes`] is a [`Real`], so the model's one text is compiled for each [`Vector`]; [`Level::run`] chooses among them when
-//! the program runs. Tilts are [`Pair`]s of float32: float64 would halve the lanes.
+//! the program runs. Tilts are [`DoubleFloat`]s: float64 would halve the lanes.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-mod pair;
+mod double_float;
 mod portable;
 mod real;
 mod vector;
 
-pub(crate) use pair::Pair;
+pub(crate) use double_float::DoubleFloat;
 pub(crate) use real::Lanes;
-pub(crate) use vector::Vector;
+pub(crate) use vector::{Arithmetic, Vector};
 
 /// What vectors a processor has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

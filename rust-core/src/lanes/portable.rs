@@ -1,8 +1,9 @@
 //! Arrays, for any processor.
 
-use super::Vector;
+use super::vector::INV_SQRT_2;
+use super::{Arithmetic, Vector};
 use std::array::from_fn;
-use std::ops::BitAnd;
+use std::ops::{BitAnd, BitOr, Not};
 
 /// Eight numbers.
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +21,22 @@ impl BitAnd for Mask {
     }
 }
 
+impl BitOr for Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, b: Self) -> Self {
+        Self(from_fn(|l| self.0[l] | b.0[l]))
+    }
+}
+
+impl Not for Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(from_fn(|l| !self.0[l]))
+    }
+}
+
 impl Portable {
     #[inline(always)]
     fn map(self, f: impl Fn(f32) -> f32) -> Self {
@@ -31,14 +48,13 @@ impl Portable {
     }
 }
 
-/// Adding and subtracting it rounds a float32 of at most 2^22 to a whole number, which then stands in the last bits.
+/// Adding and subtracting it rounds a float32 of at most 2^22 to a integer, which then stands in the last bits.
 const ROUND: f32 = 12_582_912.0;
 /// And a float64.
 const ROUND_WIDE: f64 = 6_755_399_441_055_744.0;
 
-impl Vector for Portable {
+impl Arithmetic for Portable {
     type Mask = Mask;
-    const WIDTH: usize = 8;
     const MAX: Self = Self([f32::MAX; 8]);
     const TINY: Self = Self([f32::MIN_POSITIVE; 8]);
     const SMALL: Self = Self([1e-9; 8]);
@@ -46,14 +62,6 @@ impl Vector for Portable {
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self([x; 8])
-    }
-    #[inline(always)]
-    fn load(from: &[f32]) -> Self {
-        Self(from[..8].try_into().expect("eight numbers"))
-    }
-    #[inline(always)]
-    fn store(self, to: &mut [f32]) {
-        to[..8].copy_from_slice(&self.0);
     }
     #[inline(always)]
     fn add(self, b: Self) -> Self {
@@ -113,13 +121,30 @@ impl Vector for Portable {
         self.map(|a| (a + ROUND) - ROUND)
     }
     #[inline(always)]
-    fn scale(self, n: Self) -> Self {
+    fn ldexp(self, n: Self) -> Self {
         // The number stands in the last bits of the sum; 127 more is an exponent.
         self.zip(n, |a, n| a * f32::from_bits(((n + ROUND).to_bits().wrapping_add(127)) << 23))
     }
     #[inline(always)]
-    fn turn(self, sign: Self) -> Self {
+    fn flip_sign_by(self, sign: Self) -> Self {
         self.zip(sign, |a, sign| f32::from_bits(a.to_bits() ^ (sign.to_bits() & (1 << 31))))
+    }
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        self.map(|a| ((a.to_bits() as i32 - INV_SQRT_2) >> 23) as f32)
+    }
+}
+
+impl Vector for Portable {
+    const WIDTH: usize = 8;
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        Self(from[..8].try_into().expect("eight numbers"))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        to[..8].copy_from_slice(&self.0);
     }
     #[inline(always)]
     fn phases(phase: &[f64], k_x: &[f64], k_y: &[f64], [x, y]: [f64; 2]) -> Self {

@@ -54,7 +54,7 @@ pub fn integrate(
     g: impl Fn([f64; 3]) -> f64,
 ) -> f64 {
     let f = &lobe.facets;
-    let along = [f.cos_wind, f.sin_wind];
+    let along = [f.wind.cos, f.wind.sin];
     let (nu, nc) = (n[0] * along[0] + n[1] * along[1], n[1] * along[0] - n[0] * along[1]);
     // tilt angles of the normal; the half vector's span the upper hemisphere
     let (au, ac) = (nu.atan2(n[2]), nc.atan2(n[2]));
