@@ -309,7 +309,7 @@ def test_documented_snippets(use):
     second = mi.load_dict(eval("{" + dictionary + "}"))
     assert str(first) == str(second) and "wind_speed = 7" in str(first)
     # Every parameter of the vocabulary is in the documentation's table.
-    vocabulary = re.findall(r'entry\("(\w+)"', (ROOT / "rust-core/src/vocabulary.rs").read_text())
+    vocabulary = re.findall(r'entry\("(\w+)"', (ROOT / "rust-core/src/config/vocabulary.rs").read_text())
     assert len(vocabulary) > 10
     for name in vocabulary:
         assert re.search(rf"\* - .*\b{name}\b", text), name

@@ -7,7 +7,7 @@ use crate::{Outcome, empirical_table, files, parameters};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use csv::ByteRecord;
 use prob_water::batch::Rows;
-use prob_water::scenario::FARTHEST;
+use prob_water::statistics::FARTHEST;
 use prob_water::{EnsembleLobe, Error, InstanceLobe, Surface};
 use rayon::prelude::*;
 use std::path::PathBuf;

@@ -10,7 +10,7 @@ use crate::toml_file::Document;
 use crate::{Outcome, empirical_table, files, parameters, table, threads};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use file::{Method, Scenario};
-use prob_water::exact::Exact;
+use prob_water::Exact;
 use prob_water::{EmpiricalLobe, Engagement, Ensemble, Estimate, Statistics, Surface};
 use rayon::prelude::*;
 use std::num::NonZeroU32;

@@ -352,7 +352,7 @@ impl Water {
             return ffi::DrawnWaves { drawn: false, onset: [0.0; 2], cells: vec![] };
         };
         let time = self.water.parameters.time;
-        let wave = |c: &prob_water::waves::Component| {
+        let wave = |c: &prob_water::surface::Component| {
             let (sin, cos) = c.azimuth.sin_cos();
             let (k, omega) = (c.wave_number / TAU, c.frequency);
             let turns = ((c.phase + omega * time) / TAU).fract();

@@ -2,8 +2,8 @@
 //! compares it with a mesh.
 
 use glam::DVec3;
-use prob_water::cast::Path;
-use prob_water::waves::{Draws, Numbers};
+use prob_water::surface::Path;
+use prob_water::surface::{Draws, Numbers};
 use prob_water::{Parameters, RealisedSurface, Surface, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;

@@ -3,8 +3,8 @@
 //! `cargo run --release -p prob-water --example engagements [-- REPEATS]`: every figure is the best of
 //! `REPEATS` (5 unless told); of whole scenarios and of exact means every run is told.
 
-use prob_water::cast::Path;
-use prob_water::waves::Numbers;
+use prob_water::surface::Numbers;
+use prob_water::surface::Path;
 use prob_water::{Draws, Engagement, Ensemble, Exact, Presence, RealisedSurface, Surface, Water, Wind};
 use prob_water::{Parameters, brdf::up};
 use std::hint::black_box;

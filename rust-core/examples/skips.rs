@@ -5,8 +5,8 @@
 
 use glam::DVec3;
 use prob_water::brdf::up;
-use prob_water::cast::Path;
-use prob_water::waves::Numbers;
+use prob_water::surface::Numbers;
+use prob_water::surface::Path;
 use prob_water::{Draws, Engagement, EnsembleLobe, Exact, InstanceLobe, Parameters, Surface, Water, Wind};
 use std::hint::black_box;
 use std::time::Instant;

@@ -4,8 +4,8 @@
 //! `REPEATS` times (5 unless told), interleaved with the others.
 
 use prob_water::batch::Columns;
-use prob_water::lanes::Level;
 use prob_water::real::Vec3;
+use prob_water::simd::Level;
 use prob_water::{Lobe, Parameters, Scalar, SlopeMeasure};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;

@@ -3,9 +3,9 @@
 //! `cargo run --release -p prob-water --example wave_sums [-- REPEATS]`: components per second, heights, slopes and
 //! accelerations of every place included, all candidates in turn, each `REPEATS` times (5 unless told).
 
-use prob_water::lanes::Level;
+use prob_water::simd::Level;
 use prob_water::surface::Point;
-use prob_water::waves::{Component, Draws, Numbers};
+use prob_water::surface::{Component, Draws, Numbers};
 use prob_water::{Parameters, RealisedSurface, Surface, WaveSums, Wind};
 use std::hint::black_box;
 use std::time::Instant;

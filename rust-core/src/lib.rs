@@ -16,107 +16,46 @@
 //! assert!((f - 0.1382).abs() < 1e-4, "{f}");
 //! ```
 //!
-//! One module per part of the report, each depending only on those above it:
+//! One room, a folder, for each part of the work. A room uses only those above it in this list, which `cargo xtask tidy` holds
+//! it to:
 //!
-//! | module | equations |
-//! | --- | --- |
-//! | [`wind`] | 1-2, Table 1 |
-//! | [`whitecap`] | 51, 53-55 |
-//! | [`spectrum`] | 3-22 |
-//! | [`waves`] | 23-27, 37-38: draws |
-//! | [`surface`] | 31, 38-42, 52 |
-//! | [`cast`] | 46-50 |
-//! | [`optics`] | 62-63, refractive index |
-//! | [`slopes`] | 72-79 |
-//! | [`shadowing`] | 64-67 |
-//! | [`brdf`] | 56-61, 68-71, and the mixture with whitecaps |
-//! | [`sampling`] | importance sampling of the two lobes |
-//! | [`scenario`] | 28: lasers, beams and observers |
-//! | [`ensemble`] | section 7: statistics over drawn surfaces |
-//! | [`Proposal`] | draws by importance, for narrow facets |
-//! | [`statistics`] | mean, spread, quantiles, and how far to trust them |
-//! | [`exact`] | the same for infinitely many, without draws |
-//! | [`planes`] | 80-89: in the plane of incidence and across it |
-//! | [`empirical`] | section 9: what the empirical model holds, from the full one |
-//! | [`table`], [`table_file`] | its tables, made, read and written |
-//! | [`EmpiricalLobe`] | 83-91: the empirical model, evaluated |
-//! | [`EnsembleLobe`] | the BRDF of a wavy sea seen from afar |
-//! | [`InstanceLobe`] | that of one drawn sea, place by place |
-//! | [`FacetTable`] | facets where the footprint changes from place to place |
-//! | [`grid`], [`mesh`] | a realised sea as triangles |
+//! | room | holds | equations |
+//! | --- | --- | --- |
+//! | [`numeric`] | number types, quadrature, roots, sine and cosine of many angles | |
+//! | [`simd`] | the processor's vectors as a number type | |
+//! | [`sea`] | wind, whitecaps, spectrum of the waves | 1-22, 51, 53-55 |
+//! | [`brdf`] | facets at a point: slopes, reflectance, shadowing, sampling | 56-79 |
+//! | [`config`] | parameters, their names, and the sea that follows | |
+//! | [`surface`] | drawn waves, the surface they make, rays | 23-50, 52 |
+//! | [`statistics`] | lasers and observers, over drawn surfaces and without draws | section 7 |
+//! | [`render`] | a sea from afar, one drawn sea, meshes | |
+//! | [`empirical`] | the empirical model and its tables | 80-91 |
+//! | [`api`] | many rows at once, and C | |
 //!
-//! Beside them, of no equation: [`real`], the number types of the closed form, [`lanes`], the processor's vectors as one of
-//! them, [`batch`], many rows at once, and [`wave_sums`], many places.
+//! [`Error`] stands above them all.
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
 
-pub mod batch;
+pub mod api;
 pub mod brdf;
-#[cfg(feature = "c-api")]
-mod c_api;
-pub mod cast;
-mod characteristic;
-mod columns;
+pub mod config;
 pub mod empirical;
-mod empirical_lobe;
-pub mod ensemble;
-pub mod ensemble_lobe;
 mod error;
-pub mod exact;
-mod facet_density;
-mod facet_table;
-mod gaussian_fit;
-pub mod grid;
-mod instance_lobe;
-pub mod lanes;
-mod level_water;
-pub mod mesh;
-pub mod optics;
-pub mod packets;
-mod parameters;
-pub mod planes;
-mod quadrature;
-pub mod real;
-
-pub mod sampling;
-pub mod scenario;
-pub mod shadowing;
-mod slope_density;
-mod slope_draws;
-pub mod slopes;
-pub mod spectrum;
+pub mod numeric;
+pub mod render;
+pub mod sea;
+pub mod simd;
 pub mod statistics;
 pub mod surface;
-pub mod table;
-pub mod table_file;
-mod trigonometry;
-pub mod vocabulary;
-pub mod wave_sums;
-pub mod waves;
-pub mod whitecap;
-pub mod wind;
 
-pub use brdf::Lobe;
-pub use empirical_lobe::{EmpiricalLobe, Estimate};
-pub use ensemble::{Ensemble, Presence};
-pub use ensemble_lobe::EnsembleLobe;
+pub use api::batch;
+pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, fresnel, sampling, shadowing, slopes};
+pub use config::{Across, Average, Parameters, Readings, Surface, Water, vocabulary};
+pub use empirical::{EmpiricalLobe, Estimate, Table, planes, table, table_file};
 pub use error::{Error, Warning};
-pub use exact::Exact;
-pub use facet_table::FacetTable;
-pub use grid::Layout;
-pub use instance_lobe::InstanceLobe;
-pub use mesh::Mesh;
-pub use optics::Fresnel;
-pub use parameters::{Across, Average, Body, Parameters, Readings, Surface, Water};
-pub use real::{Real, Scalar};
-pub use sampling::Sample;
-pub use scenario::{Aim, Engagement};
-pub use slope_draws::Proposal;
-pub use slopes::SlopeMeasure;
-pub use statistics::Statistics;
-pub use surface::Surface as RealisedSurface;
-pub use table::Table;
-pub use wave_sums::WaveSums;
-pub use waves::Draws;
-pub use wind::{Wind, WindProfile};
+pub use numeric::{Real, Scalar, real};
+pub use render::{EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, ensemble_lobe, grid, mesh};
+pub use sea::{Body, Wind, WindProfile, spectrum, whitecap, wind};
+pub use statistics::{Aim, Engagement, Ensemble, Exact, Presence, Proposal, Statistics, ensemble};
+pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

@@ -4,8 +4,8 @@ mod common;
 
 use common::water;
 use glam::DVec3;
-use prob_water::cast::Path;
-use prob_water::waves::{Draws, Numbers};
+use prob_water::surface::Path;
+use prob_water::surface::{Draws, Numbers};
 use prob_water::{RealisedSurface, Surface};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{direction, rows, water};
-use prob_water::ensemble::Sighting;
+use prob_water::statistics::Sighting;
 use prob_water::{Engagement, Ensemble, Presence, Statistics, Surface, Water};
 
 /// The base scenario of the report's section 8, with a number of instances.

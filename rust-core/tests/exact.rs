@@ -3,7 +3,7 @@
 mod common;
 
 use common::{direction, dot, water};
-use prob_water::waves::{Draws, Numbers};
+use prob_water::surface::{Draws, Numbers};
 use prob_water::{Engagement, Ensemble, Exact, Surface, Water, whitecap};
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Lanes of float32 against the float64 text, for every kind of vector that this processor has.
 
 use prob_water::batch::{Columns, Coordinates, Rows};
-use prob_water::lanes::Level;
+use prob_water::simd::Level;
 use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::f64::consts::TAU;

@@ -3,9 +3,9 @@
 mod common;
 
 use common::worse;
-use prob_water::lanes::Level;
+use prob_water::simd::Level;
+use prob_water::surface::Component;
 use prob_water::surface::Point;
-use prob_water::waves::Component;
 use prob_water::{Draws, Ensemble, Parameters, RealisedSurface, Surface, WaveSums, Wind};
 use std::f64::consts::TAU;
 

@@ -4,7 +4,7 @@ mod common;
 
 use common::water;
 use prob_water::spectrum::spreading;
-use prob_water::waves::{Draws, Numbers, Waves};
+use prob_water::surface::{Draws, Numbers, Waves};
 use prob_water::{Surface, Water, slopes};
 use rayon::prelude::*;
 use std::f64::consts::PI;

@@ -3,8 +3,8 @@
 mod common;
 
 use common::water;
-use prob_water::ensemble::Samples;
-use prob_water::waves::{Draws, Numbers};
+use prob_water::statistics::Samples;
+use prob_water::surface::{Draws, Numbers};
 use prob_water::{Aim, Engagement, Ensemble, Presence, Surface, Water, whitecap};
 use rayon::prelude::*;
 

@@ -6,7 +6,7 @@ use cbindgen::{Config, DocumentationStyle, EnumConfig, Language, RenameRule, Sty
 use std::fs;
 use std::path::PathBuf;
 
-const SOURCE: &str = "rust-core/src/c_api.rs";
+const SOURCE: &str = "rust-core/src/api/c_api.rs";
 const HEADER: &str = "rust-core/include/prob_water.h";
 const PROGRAMS: &str = "rust-core/tests/c";
 

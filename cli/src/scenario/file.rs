@@ -5,7 +5,7 @@ use super::settings::{self, Settings, Source};
 use crate::empirical_table;
 use crate::model::{Flag, Model};
 use crate::toml_file::Document;
-use prob_water::exact::Exact;
+use prob_water::Exact;
 use prob_water::{Across, Draws, EmpiricalLobe, Engagement, Ensemble, Error, Parameters, Surface, Water};
 use std::path::{Path, PathBuf};
 

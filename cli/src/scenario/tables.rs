@@ -4,8 +4,8 @@ use super::file::{Method, Scenario};
 use crate::table::{self, Cell, Table};
 use crate::{Outcome, Stop, files};
 use clap::ArgMatches;
-use prob_water::ensemble::{Samples, Sighting};
 use prob_water::statistics::FEWEST_EFFECTIVE;
+use prob_water::statistics::{Samples, Sighting};
 use prob_water::{Engagement, Statistics};
 
 const STATISTICS: [&str; 14] = [

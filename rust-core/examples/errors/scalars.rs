@@ -1,7 +1,7 @@
 //! Stages that are functions of a few numbers: wind, slopes, reflectance, shadowing, whitecaps.
 
 use crate::Lines;
-use prob_water::optics::{Fresnel, Reflectance, pure_water};
+use prob_water::brdf::{Fresnel, Reflectance, fresnel::pure_water};
 use prob_water::real::{IERFC, IERFC_END};
 use prob_water::shadowing::hidden;
 use prob_water::slopes::{GramCharlier, WIDTH, skewness, variances};

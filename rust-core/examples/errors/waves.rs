@@ -2,9 +2,9 @@
 
 use crate::Lines;
 use glam::DVec3;
-use prob_water::cast::Path;
 use prob_water::spectrum::Spectrum;
-use prob_water::waves::{Component, Draws, Numbers};
+use prob_water::surface::Path;
+use prob_water::surface::{Component, Draws, Numbers};
 use prob_water::{Body, Layout, Mesh, Parameters, RealisedSurface, Surface, Water, WaveSums, Wind};
 use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};

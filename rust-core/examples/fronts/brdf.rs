@@ -2,8 +2,8 @@
 
 use crate::{point, rms, seconds, write};
 use prob_water::batch::Columns;
-use prob_water::lanes::Level;
 use prob_water::real::Vec3;
+use prob_water::simd::Level;
 use prob_water::{Aim, EmpiricalLobe, Engagement, Ensemble, Exact, Parameters, Scalar, Surface, Table, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;

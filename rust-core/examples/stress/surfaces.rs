@@ -4,9 +4,9 @@ use crate::closed_form::shown;
 use crate::draw::{Draw, Vec3};
 use crate::means::{drawn_sea, fine, pair};
 use crate::tally::Tally;
-use prob_water::cast::Path;
-use prob_water::scenario::FARTHEST;
-use prob_water::waves::Numbers;
+use prob_water::statistics::FARTHEST;
+use prob_water::surface::Numbers;
+use prob_water::surface::Path;
 use prob_water::{
     Aim, Draws, Engagement, Ensemble, Exact, InstanceLobe, Parameters, Presence, Proposal, Statistics,
     Surface,

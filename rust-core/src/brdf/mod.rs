@@ -1,0 +1,13 @@
+//! The BRDF at a point of the surface: facets, their slopes, reflectance and shadowing, the mixture with whitecaps, and
+//! draws from it (Eqs. 56-79).
+
+pub mod fresnel;
+pub(crate) mod lobe;
+pub mod sampling;
+pub mod shadowing;
+pub mod slopes;
+
+pub use fresnel::{Fresnel, Reflectance};
+pub use lobe::{Facets, Lobe, Parts, WindAxes, up};
+pub use sampling::Sample;
+pub use slopes::SlopeMeasure;

@@ -1,0 +1,326 @@
+//! What a user may choose, checked once and turned into the coefficients of a sea.
+
+use crate::brdf::lobe::steep_gain;
+use crate::brdf::slopes::GramCharlier;
+use crate::brdf::{Facets, Fresnel, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing, slopes};
+use crate::error::{Error, Warning, refuse};
+use crate::sea::{Body, Wind, WindProfile, whitecap, wind};
+
+/// How the report's defective equations are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Readings {
+    /// With the corrections of docs/model.md.
+    #[default]
+    Corrected,
+    /// pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand, and neither of the bounds
+    /// by which the corrected readings conserve energy ([`Facets::visible_bound`], steep facets).
+    AsPrinted,
+}
+
+/// Which surface the facets lie on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Surface {
+    /// The normal that the geometry gives.
+    #[default]
+    Flat,
+    /// Drawn waves.
+    Instance,
+    /// The mean over all drawn waves.
+    Ensemble,
+    /// The report's empirical model of it, from a table.
+    Empirical,
+}
+
+/// The surfaces that have drawn waves.
+pub(crate) const DRAWN: [Surface; 3] = [Surface::Instance, Surface::Ensemble, Surface::Empirical];
+
+impl Surface {
+    /// The footprint D in m unless one is given: infinite on a flat surface, which has no waves, else 0.15 m.
+    pub fn default_footprint(self) -> f64 {
+        if DRAWN.contains(&self) { 0.15 } else { f64::INFINITY }
+    }
+}
+
+/// What a sea from afar reflects on average, of what its waves do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Average {
+    /// Power: f times the local cosine. Reciprocal.
+    #[default]
+    Power,
+    /// The report's mean of f, times the cosine to the vertical.
+    Report,
+}
+
+/// How the empirical model falls off across the plane of incidence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Across {
+    /// As the report's Gaussian, Eq. 90.
+    #[default]
+    Report,
+    /// As the density of all slopes, drawn waves' and facets', in closed form.
+    Slopes,
+}
+
+/// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// The wind.
+    pub wind: Wind,
+    /// Azimuth the wind comes from, degrees counter-clockwise from +x.
+    pub wind_direction: f64,
+    /// The report's D, m: waves shorter than 2 D are facets. Infinite: all waves are. `None`: the surface's
+    /// [default](Surface::default_footprint).
+    pub footprint: Option<f64>,
+    /// Where the facets lie.
+    pub surface: Surface,
+    /// What the mean over all drawn waves is of; has no effect on other surfaces.
+    pub average: Average,
+    /// How the empirical model falls off across the plane; has no effect on other surfaces.
+    pub across: Across,
+    /// The report's M: waves of a drawn surface.
+    pub components: u32,
+    /// The report's N: drawn surfaces of an ensemble.
+    pub instances: u64,
+    /// Chooses the random numbers, below 2^53.
+    pub seed: u64,
+    /// Time at which waves are drawn, s.
+    pub time: f64,
+    /// Depth of the water, m.
+    pub depth: f64,
+    /// Distance to the shore the wind comes from, m: matters to 100 km.
+    pub fetch: f64,
+    /// Micrometres.
+    pub wavelength: f64,
+    /// Refractive index; else that of `water` at `wavelength`.
+    pub ior: Option<f64>,
+    /// Salt or fresh.
+    pub water: Body,
+    /// Reflectance of a facet.
+    pub fresnel: Fresnel,
+    /// Measure of the slope density.
+    pub slope_measure: SlopeMeasure,
+    /// Reading of the defective equations.
+    pub readings: Readings,
+    /// Whitecaps blended in.
+    pub whitecaps: bool,
+    /// Shadowing function applied.
+    pub shadowing: bool,
+    /// Skewness and kurtosis applied.
+    pub gram_charlier: bool,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self {
+            wind: Wind::Speed { speed: 5.0, height: 10.0 },
+            wind_direction: 0.0,
+            footprint: None,
+            surface: Surface::Flat,
+            average: Average::Power,
+            across: Across::Report,
+            components: 5,
+            instances: 50,
+            seed: 0,
+            time: 0.0,
+            depth: f64::INFINITY,
+            fetch: f64::INFINITY,
+            wavelength: 0.55,
+            ior: None,
+            water: Body::Ocean,
+            fresnel: Fresnel::Schlick,
+            slope_measure: SlopeMeasure::Angle,
+            readings: Readings::Corrected,
+            whitecaps: true,
+            shadowing: true,
+            gram_charlier: true,
+        }
+    }
+}
+
+/// A configured sea: checked parameters, what follows from them once, and the coefficients to evaluate.
+#[derive(Debug, Clone, Copy)]
+pub struct Water {
+    /// What it was made from.
+    pub parameters: Parameters,
+    /// The report's D in use, m.
+    pub footprint: f64,
+    /// The wind at every height the model needs.
+    pub wind: WindProfile,
+    /// Refractive index in use.
+    pub ior: f64,
+    /// Slope variances of the facets, upwind and crosswind (Eqs. 74-77).
+    pub variances: [f64; 2],
+    /// F_WC (Eq. 51), whether or not whitecaps are blended in.
+    pub whitecap_fraction: f64,
+    /// The BRDF at a point.
+    pub(crate) lobe: Lobe<f64>,
+}
+
+/// More components than any surface needs: 512 fill a renderer's.
+pub const MOST_COMPONENTS: u32 = 65_536;
+/// More instances than any mean needs.
+pub const MOST_INSTANCES: u64 = 1_000_000_000;
+/// Times reach to this far from 0, s: beyond, phases would lose their last digits.
+pub const LONGEST_TIME: f64 = 1e9;
+/// Seeds are below it: float64 holds all of them.
+const SEEDS: u64 = 1 << 53;
+
+/// Refuses a number outside of its parameter's own range, whatever the others are; `shown` is the value as it was given.
+pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Result<(), Error> {
+    let [shortest, longest] = fresnel::WAVELENGTHS;
+    let (holds, allowed) = match parameter {
+        "wind_direction" => (x.is_finite(), "any finite angle, degrees"),
+        "footprint" | "depth" | "fetch" => (x > 0.0, "above 0 m, up to inf"),
+        "components" => ((1.0..=f64::from(MOST_COMPONENTS)).contains(&x), "1 to 65536"),
+        "instances" => ((1.0..=MOST_INSTANCES as f64).contains(&x), "1 to 1000000000"),
+        "seed" => ((0.0..SEEDS as f64).contains(&x), "0 to 9007199254740991"),
+        "time" => (x.abs() <= LONGEST_TIME, "finite, at most 1e9 s from 0"),
+        "wavelength" => ((shortest..=longest).contains(&x), "0.2 to 200 micrometres"),
+        "ior" => ((1.0..=4.0).contains(&x), "1 to 4"),
+        _ => return wind::check(parameter, x, shown),
+    };
+    if holds { Ok(()) } else { refuse(parameter, shown, allowed) }
+}
+
+impl Water {
+    /// The BRDF of a flat surface: facets about the vertical, or about normals that the caller brings, and the whitecaps of
+    /// Eq. 51.
+    ///
+    /// # Errors
+    /// [`Error::Surface`] where the surface has drawn waves. They have BRDFs of their own, [`crate::InstanceLobe`],
+    /// [`crate::EnsembleLobe`] and [`crate::EmpiricalLobe`]; what lies on them is [`Water::local_lobe`].
+    pub fn lobe(&self) -> Result<Lobe<f64>, Error> {
+        let own = match self.parameters.surface {
+            Surface::Flat => return Ok(self.lobe),
+            Surface::Instance => "InstanceLobe",
+            Surface::Ensemble => "EnsembleLobe",
+            Surface::Empirical => "EmpiricalLobe",
+        };
+        let value = self.parameters.surface.name();
+        Err(Error::Surface { value, allowed: format!("flat; {own} is the BRDF of {value}") })
+    }
+
+    /// The BRDF at a point of any surface about that point's own normal: the facets, of waves shorter than two footprints,
+    /// and the whitecaps of Eq. 51. For callers who bring the normals of the longer waves, as those of a mesh. By itself it
+    /// is not the BRDF of a surface with drawn waves.
+    pub fn local_lobe(&self) -> Lobe<f64> {
+        self.lobe
+    }
+
+    /// Values that are allowed but hardly meant, as a mistaken unit makes them.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let p = &self.parameters;
+        let unusual = |parameter, value: f64, holds: bool, usual| {
+            (!holds).then(|| Warning { parameter, value: value.to_string(), usual })
+        };
+        let (d, azimuth) = (self.footprint, p.wind_direction);
+        let w = if let Wind::FrictionVelocity(w) = p.wind { w } else { 0.0 };
+        [
+            unusual("friction_velocity", w, w == 0.0 || w >= 1.0, "0, or from 1 cm/s (not m/s)"),
+            unusual("wind_direction", azimuth, azimuth.abs() <= 360.0, "-360 to 360 degrees"),
+            unusual("footprint", d, d.is_infinite() || (1e-3..=100.0).contains(&d), "0.001 to 100 m, or inf"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// Probability of a whitecap (Eqs. 53-54) where a drawn surface has a vertical acceleration in m/s^2; 0 where
+    /// whitecaps are switched off.
+    pub fn whitecap_probability(&self, acceleration: f64) -> f64 {
+        if !self.parameters.whitecaps {
+            return 0.0;
+        }
+        whitecap::probability(self.wind.friction_velocity, 100.0 * acceleration)
+    }
+
+    /// The same sea under a wind from another azimuth, in degrees.
+    pub(crate) fn turned(mut self, degrees: f64) -> Self {
+        self.parameters.wind_direction = degrees;
+        self.lobe.facets.wind = WindAxes::new(degrees);
+        self
+    }
+}
+
+impl Parameters {
+    /// The report's D in m: as given, or the surface's [default](Surface::default_footprint).
+    pub fn footprint(&self) -> f64 {
+        self.footprint.unwrap_or_else(|| self.surface.default_footprint())
+    }
+
+    /// Checks everything and computes what depends on the parameters alone.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] with the parameter, its value and what is allowed.
+    pub fn configure(&self) -> Result<Water, Error> {
+        let wind = self.wind.profile()?;
+        let footprint = self.footprint();
+        check("wind_direction", self.wind_direction, self.wind_direction)?;
+        check("footprint", footprint, footprint)?;
+        check("components", f64::from(self.components), self.components)?;
+        check("instances", self.instances as f64, self.instances)?;
+        check("seed", self.seed as f64, self.seed)?;
+        check("time", self.time, self.time)?;
+        check("depth", self.depth, self.depth)?;
+        check("fetch", self.fetch, self.fetch)?;
+        check("wavelength", self.wavelength, self.wavelength)?;
+        if let Some(ior) = self.ior {
+            check("ior", ior, ior)?;
+        }
+        let ior = self.ior.unwrap_or_else(|| {
+            let salt = if self.water == Body::Ocean { fresnel::SEA_SALT } else { 0.0 };
+            fresnel::pure_water(self.wavelength) + salt
+        });
+        let variances = slopes::variances(&wind, footprint);
+        let whitecap_fraction = whitecap::fraction(wind.w10);
+        Ok(Water {
+            parameters: *self,
+            footprint,
+            wind,
+            ior,
+            variances,
+            whitecap_fraction,
+            lobe: Lobe {
+                facets: self.facets(&wind, ior, variances),
+                whitecap_fraction: 0.0,
+                smooth_fraction: 1.0,
+                whitecap_brdf: whitecap::brdf(self.wavelength),
+            }
+            .with_whitecaps(if self.whitecaps { whitecap_fraction } else { 0.0 }),
+        })
+    }
+
+    /// The facets of a wind, an index and slope variances.
+    pub(crate) fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
+        let [sigma_u, sigma_c] = variances.map(f64::sqrt);
+        let as_printed = self.readings == Readings::AsPrinted;
+        let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
+        let slope_measure = self.slope_measure == SlopeMeasure::Slope;
+        let mut facets = Facets {
+            sigma_u,
+            sigma_c,
+            inv_width_u: 1.0,
+            inv_width_c: 1.0,
+            scale: 1.0,
+            steep_gain: steep_gain(sigma_u.max(sigma_c)),
+            // In tilt angles facets show up to (8 sigma_i^2 + 3 sigma_j^2)/3 more area than their slopes' Lambda.
+            // A percent is left to quadratures and rounding, so that "at most 1" can be checked.
+            bound: 0.99 / if slope_measure { 1.0 } else { 1.0 + 3.0 * (variances[0] + variances[1]) },
+            proposal: [sigma_u, sigma_c],
+            bounded: false,
+            wind: WindAxes::new(self.wind_direction),
+            correction: GramCharlier::new(slopes::skewness(wind), as_printed),
+            sigma_shadow: shadowing::sigma(wind.w10),
+            reflectance: Reflectance::new(ior, self.fresnel),
+            slope_measure,
+            gram_charlier: self.gram_charlier,
+            shadowing: self.shadowing,
+            as_printed,
+        };
+        facets.set_sigmas([sigma_u, sigma_c], eq_56 / std::f64::consts::TAU);
+        let stretch = facets.proposal_stretch();
+        facets.proposal = facets.proposal.map(|sigma| sigma * stretch);
+        facets.bounded = self.shadowing && !as_printed && facets.needs_bound();
+        facets
+    }
+}

@@ -1,0 +1,10 @@
+//! What the wind does to the water: wind profile, whitecaps and the spectrum of the waves (Eqs. 1-22, 51, 53-55).
+
+mod salinity;
+pub mod spectrum;
+pub mod whitecap;
+pub mod wind;
+
+pub use salinity::Body;
+pub use spectrum::Spectrum;
+pub use wind::{Wind, WindProfile};

@@ -1,0 +1,11 @@
+//! What is in the water.
+
+/// Salt or no salt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Body {
+    /// Sea water, chlorinity 19 g/kg.
+    #[default]
+    Ocean,
+    /// Fresh water.
+    Fresh,
+}

@@ -1,0 +1,268 @@
+//! The characteristic function of the slope and the acceleration of one drawn wave at a point.
+//!
+//! The components are drawn independently and alike, so the characteristic function of their sum is that of one to the
+//! power M. One component with a uniform phase has the slope `a k sin(Psi) e_phi` and the vertical acceleration
+//! `-a omega^2 cos(Psi)`; its characteristic function is the mean of `J0(sqrt((a k q.e_phi)^2 + (a omega^2 r)^2))` over
+//! the draws of k and phi. The amplitude is a function of k times the root of F(phi), so that mean is taken over k
+//! once, for a table, and over phi for every (q, r): F and `(q.e_phi)^2` have the period pi of the azimuths drawn, and
+//! equal weights at equal distances converge as fast as anything.
+//!
+//! Everything is even in both slopes (upwind and crosswind) and in the acceleration.
+
+use crate::numeric::quadrature::{gauss_legendre, panels};
+use crate::sea::spectrum::spreading;
+use crate::surface::Waves;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::LazyLock;
+
+/// Nodes in ln k for every piece of the spectrum, and azimuths of a half turn.
+const WAVE_NUMBERS: usize = 16;
+const AZIMUTHS: usize = 32;
+
+/// Draws of one component.
+#[derive(Debug, Clone)]
+pub(crate) struct Component {
+    /// Share, slope amplitude over sqrt(F), and acceleration amplitude over sqrt(F) in m/s^2, of wave numbers.
+    wave_numbers: Vec<[f64; 3]>,
+    /// cos and sin from the wind's azimuth, and sqrt(F).
+    azimuths: Vec<[f64; 3]>,
+    /// Of one component: slope upwind, slope crosswind, acceleration.
+    variances: [f64; 3],
+    /// No component has more: slope upwind, slope crosswind, acceleration.
+    bounds: [f64; 3],
+}
+
+/// Variances of a drawn sea: slope upwind, crosswind, acceleration in m^2/s^4.
+pub(crate) fn variances(waves: &Waves) -> [f64; 3] {
+    Component::new(waves).map_or([0.0; 3], |component| component.variances(waves.components as f64))
+}
+
+/// No drawn sea is steeper.
+pub(crate) fn steepest(waves: &Waves) -> f64 {
+    Component::new(waves).map_or(0.0, |component| {
+        let [upwind, crosswind, _] = component.bounds(waves.components as f64);
+        upwind.hypot(crosswind)
+    })
+}
+
+impl Component {
+    /// `None` where there are no waves.
+    pub fn new(waves: &Waves) -> Option<Self> {
+        let [low, high] = waves.log_range?;
+        let rule = gauss_legendre(WAVE_NUMBERS);
+        let mut wave_numbers = vec![];
+        for piece in waves.spectrum.pieces(low.exp(), high.exp()).windows(2) {
+            let (start, end) = (piece[0].ln(), piece[1].ln());
+            wave_numbers.extend(panels(&rule, start, end, end - start).into_iter().map(|(log_k, width)| {
+                let component = waves.component(log_k.exp(), 0.0, waves.wind_azimuth);
+                let amplitude = component.amplitude / spreading(0.0).sqrt();
+                let acceleration = amplitude * component.frequency.powi(2);
+                [width / (high - low), amplitude * component.wave_number, acceleration]
+            }));
+        }
+        let azimuths: Vec<_> = (0..AZIMUTHS)
+            .map(|i| {
+                let angle = PI * ((i as f64 + 0.5) / AZIMUTHS as f64) - FRAC_PI_2;
+                [angle.cos(), angle.sin(), spreading(angle).sqrt()]
+            })
+            .collect();
+        let energy = |of: usize| wave_numbers.iter().map(|n| n[0] * n[of] * n[of]).sum::<f64>();
+        let share = |of: &dyn Fn(&[f64; 3]) -> f64| azimuths.iter().map(of).sum::<f64>() / AZIMUTHS as f64;
+        let variances = [
+            0.5 * energy(1) * share(&|[c, _, f]| (c * f).powi(2)),
+            0.5 * energy(1) * share(&|[_, s, f]| (s * f).powi(2)),
+            0.5 * energy(2) * share(&|[_, _, f]| f * f),
+        ];
+        let most = |of: usize| wave_numbers.iter().map(|n| n[of]).fold(0.0, f64::max);
+        let widest = |of: &dyn Fn(&[f64; 3]) -> f64| azimuths.iter().map(of).fold(0.0, f64::max);
+        let bounds = [
+            most(1) * widest(&|[c, _, f]| (c * f).abs()),
+            most(1) * widest(&|[_, s, f]| (s * f).abs()),
+            most(2) * widest(&|[_, _, f]| *f),
+        ];
+        Some(Self { wave_numbers, azimuths, variances, bounds })
+    }
+
+    /// Variances of a sum of `count`: slope upwind, crosswind, acceleration in m^2/s^4.
+    pub fn variances(&self, count: f64) -> [f64; 3] {
+        self.variances.map(|v| count * v)
+    }
+
+    /// Bounds of a sum of `count`.
+    pub fn bounds(&self, count: f64) -> [f64; 3] {
+        self.bounds.map(|b| count * b)
+    }
+
+    /// Characteristic function of the slope at the products of these frequencies upwind and crosswind, row by row.
+    pub fn slope(&self, upwind: &[f64], crosswind: &[f64]) -> Vec<f64> {
+        let end = self.reach(upwind, crosswind);
+        let table = Table::new(end, self.finest(1), |x| self.mean(|n| bessel(n[1] * x)));
+        let mut values = Vec::with_capacity(upwind.len() * crosswind.len());
+        for u in upwind {
+            for c in crosswind {
+                let of = |[cos, sin, f]: &[f64; 3]| table.at(f * (u * cos + c * sin).abs());
+                values.push(self.azimuths.iter().map(of).sum::<f64>() / AZIMUTHS as f64);
+            }
+        }
+        values
+    }
+
+    /// Characteristic function of the acceleration at these frequencies.
+    pub fn acceleration(&self, frequencies: &[f64]) -> Vec<f64> {
+        let widest = self.azimuths.iter().map(|a| a[2]).fold(0.0, f64::max);
+        let end = widest * frequencies.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let table = Table::new(end, self.finest(2), |y| self.mean(|n| bessel(n[2] * y)));
+        let of = |r: &f64| self.azimuths.iter().map(|a| table.at(a[2] * r)).sum::<f64>() / AZIMUTHS as f64;
+        frequencies.iter().map(of).collect()
+    }
+
+    /// Characteristic function of slope and acceleration: for every pair as in [`Component::slope`] a row over
+    /// the frequencies of the acceleration.
+    pub fn slope_and_acceleration(
+        &self,
+        upwind: &[f64],
+        crosswind: &[f64],
+        acceleration: &[f64],
+    ) -> Vec<f64> {
+        let (end, step) = (self.reach(upwind, crosswind), self.finest(1));
+        // Azimuths to both sides of the wind share a table for every frequency of the acceleration.
+        let half = &self.azimuths[..AZIMUTHS / 2];
+        let pairs: Vec<_> = half.iter().flat_map(|a| acceleration.iter().map(move |r| a[2] * r)).collect();
+        let table = |y: f64| {
+            Table::new(end, step, |x| {
+                self.mean(|n| bessel((n[1] * x * n[1] * x + n[2] * y * n[2] * y).sqrt()))
+            })
+        };
+        let tables: Vec<Table> = pairs.into_par_iter().map(table).collect();
+        let row = |(u, c): (&f64, &f64)| {
+            let mut values = vec![0.0; acceleration.len()];
+            for (tables, [cos, sin, f]) in tables.chunks(acceleration.len()).zip(half) {
+                for x in [f * (u * cos + c * sin).abs(), f * (u * cos - c * sin).abs()] {
+                    for (value, table) in values.iter_mut().zip(tables) {
+                        *value += table.at(x) / AZIMUTHS as f64;
+                    }
+                }
+            }
+            values
+        };
+        let pairs: Vec<_> = upwind.iter().flat_map(|u| crosswind.iter().map(move |c| (u, c))).collect();
+        pairs.into_par_iter().flat_map_iter(row).collect()
+    }
+
+    fn mean(&self, of: impl Fn(&[f64; 3]) -> f64) -> f64 {
+        self.wave_numbers.iter().map(|n| n[0] * of(n)).sum()
+    }
+
+    /// The largest argument that these frequencies need.
+    fn reach(&self, upwind: &[f64], crosswind: &[f64]) -> f64 {
+        let largest = |of: &[f64]| of.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let (u, c) = (largest(upwind), largest(crosswind));
+        self.azimuths.iter().map(|[cos, sin, f]| f * (u * cos.abs() + c * sin.abs())).fold(0.0, f64::max)
+    }
+
+    /// A step of a table that resolves the Bessel function of the largest amplitude.
+    fn finest(&self, of: usize) -> f64 {
+        0.25 / self.wave_numbers.iter().map(|n| n[of]).fold(0.0, f64::max)
+    }
+}
+
+/// An even function at equal steps from 0, with interpolation by polynomials of the fifth degree.
+struct Table {
+    per_step: f64,
+    values: Vec<f64>,
+}
+
+impl Table {
+    fn new(end: f64, step: f64, of: impl Fn(f64) -> f64) -> Self {
+        // Two values before 0, where the function is even, and three after the end.
+        let count = (end / step) as usize + 7;
+        Self { per_step: 1.0 / step, values: (0..count).map(|i| of((i as f64 - 2.0).abs() * step)).collect() }
+    }
+
+    #[inline]
+    fn at(&self, x: f64) -> f64 {
+        let x = x * self.per_step;
+        let i = x as usize;
+        let v = &self.values[i..i + 6];
+        quintic(x - i as f64).iter().zip(v).map(|(weight, value)| weight * value).sum()
+    }
+}
+
+/// Lagrange's weights of the values at -2, -1, 0, 1, 2 and 3.
+#[inline]
+fn quintic(x: f64) -> [f64; 6] {
+    let (a, b, c, d, e, f) = (x + 2.0, x + 1.0, x, x - 1.0, x - 2.0, x - 3.0);
+    let (ab, ef, cd) = (a * b, e * f, c * d);
+    [
+        -b * cd * ef / 120.0,
+        a * cd * ef / 24.0,
+        -ab * d * ef / 12.0,
+        ab * c * ef / 12.0,
+        -ab * cd * f / 24.0,
+        ab * cd * e / 120.0,
+    ]
+}
+
+/// J0 of a number not below 0, to 1e-7: a table, beyond it the leading asymptotic terms.
+fn bessel(x: f64) -> f64 {
+    static J0: LazyLock<Table> = LazyLock::new(|| Table::new(64.0, 0.125, libm::j0));
+    if x < 64.0 {
+        return J0.at(x);
+    }
+    let phase = x - 0.25 * PI;
+    (2.0 / (PI * x)).sqrt() * (phase.cos() + phase.sin() / (8.0 * x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Variances of slope and acceleration against sums over 100,000 wave numbers, with fetch, depth and every form of
+    /// the spectrum.
+    #[test]
+    fn variances_are_the_spectrums() {
+        for (w, footprint) in
+            [(2.0, 0.05), (8.0, 0.15), (24.0, 0.15), (56.0, 0.15), (120.0, 0.02), (238.0, 0.05)]
+        {
+            for (fetch, depth) in
+                [(f64::INFINITY, f64::INFINITY), (300.0, 4.0), (800.0, 0.2), (5e3, 1e3), (5e4, 1e3)]
+            {
+                let waves = crate::config::Parameters {
+                    wind: crate::sea::Wind::FrictionVelocity(w),
+                    footprint: Some(footprint),
+                    fetch,
+                    depth,
+                    ..crate::config::Parameters::default()
+                }
+                .configure()
+                .unwrap()
+                .waves();
+                let found = Component::new(&waves).unwrap().variances;
+                let [low, high] = waves.log_range.unwrap();
+                let n = 100_000;
+                let mut sums = [0.0; 2];
+                for i in 0..n {
+                    let k = (low + (high - low) * (f64::from(i) + 0.5) / f64::from(n)).exp();
+                    let c = waves.component(k, 0.0, waves.wind_azimuth);
+                    let energy = c.amplitude.powi(2) / spreading(0.0) / f64::from(n);
+                    sums[0] += energy * c.wave_number.powi(2);
+                    sums[1] += energy * c.frequency.powi(4);
+                }
+                // F has the mean 1/pi over the azimuths drawn.
+                for (found, sum) in [(found[0] + found[1], sums[0]), (found[2], sums[1])] {
+                    let off = found / (0.5 * sum / PI) - 1.0;
+                    assert!(off.abs() < 1e-4, "w* {w} D {footprint} fetch {fetch} depth {depth}: {off:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bessel_follows_libm() {
+        for i in 0..20_000 {
+            let x = f64::from(i) * 0.01;
+            assert!((bessel(x) - libm::j0(x)).abs() < if x < 64.0 { 1e-8 } else { 2e-6 }, "{x}");
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Drawn seas: their waves, the surface that these make, and rays that meet it (Eqs. 23-50, 52).
+
+mod component;
+mod random;
+mod ray;
+mod realised;
+mod wave_sums;
+mod waves;
+
+pub use component::{Component, share};
+pub use random::{Draws, Numbers};
+pub use ray::Path;
+pub use realised::{Point, Surface, normal};
+pub use wave_sums::WaveSums;
+pub use waves::Waves;

@@ -1,0 +1,107 @@
+//! The waves that are drawn: which components a sea may have (Eqs. 21-27, 37-38).
+//!
+//! [`Draws::Stratified`] takes the same random numbers as [`Draws::Random`]. Component j of M has its wave number at
+//! (j + u)/M of the range, and its azimuth at the fraction of j golden ratios plus the first component's number; the other components' third number is
+//! not used. So components come in order of rising wave number, and other M draw another sea.
+
+use super::component::Component;
+use super::random::{Draws, Numbers};
+use super::realised::Surface;
+use crate::config::Water;
+use crate::sea::Spectrum;
+use crate::sea::spectrum::spreading;
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+/// Its multiples' fractions spread most evenly.
+const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
+
+/// What the components of a sea are drawn from.
+#[derive(Debug, Clone, Copy)]
+pub struct Waves {
+    /// The energy.
+    pub spectrum: Spectrum,
+    /// Logarithms of the smallest and the largest wave number in rad/cm (Eqs. 21-23); `None`: there are no waves.
+    pub log_range: Option<[f64; 2]>,
+    /// M, components of an instance.
+    pub components: usize,
+    /// phi_W, radians.
+    pub wind_azimuth: f64,
+}
+
+impl Waves {
+    /// Number of components an instance really has: 0 where there are no waves.
+    pub fn len(&self) -> usize {
+        if self.log_range.is_some() { self.components } else { 0 }
+    }
+
+    /// Whether there are no waves.
+    pub fn is_empty(&self) -> bool {
+        self.log_range.is_none()
+    }
+
+    /// L, extent of the wave numbers (Eq. 25).
+    pub fn extent(&self) -> f64 {
+        self.log_range.map_or(0.0, |[low, high]| high - low)
+    }
+
+    /// The wave of a wave number in rad/cm, a phase and an azimuth: amplitude as in Eq. 38, frequency of Eq. 4.
+    pub fn component(&self, k: f64, phase: f64, azimuth: f64) -> Component {
+        let energy = self.spectrum.density(k) * spreading(azimuth - self.wind_azimuth) * k;
+        Component {
+            wave_number: 100.0 * k,
+            phase,
+            azimuth,
+            amplitude: 0.01 * (TAU * self.extent() / self.components as f64 * energy).sqrt(),
+            frequency: self.spectrum.frequency(k),
+        }
+    }
+
+    /// The wave of three uniform numbers (Eqs. 23-27).
+    fn draw(&self, [low, high]: [f64; 2], u: [f64; 3]) -> Component {
+        let k = (low + u[0] * (high - low)).exp();
+        self.component(k, TAU * u[1], self.wind_azimuth + PI * (u[2] - 0.5))
+    }
+
+    /// The components that these numbers draw.
+    pub fn components(&self, mut numbers: Numbers) -> impl Iterator<Item = Component> {
+        let range = self.log_range.unwrap_or_default();
+        let mut shift = None;
+        (0..self.len()).map(move |j| {
+            let mut u: [f64; 3] = std::array::from_fn(|_| numbers.next());
+            if numbers.draws == Draws::Stratified {
+                let shift = *shift.get_or_insert(u[2]);
+                u[0] = (j as f64 + u[0]) / self.len() as f64;
+                u[2] = (shift + j as f64 * GOLDEN_RATIO).fract();
+            }
+            self.draw(range, u)
+        })
+    }
+
+    /// Their surface at a time in s.
+    pub fn surface(&self, numbers: Numbers, time: f64) -> Surface {
+        Surface::new(self.components(numbers), time)
+    }
+}
+
+impl Water {
+    /// What the waves longer than two footprints are drawn from.
+    pub fn waves(&self) -> Waves {
+        self.waves_down_to(self.footprint)
+    }
+
+    /// What waves are drawn from that fade out in an octave about two footprints, as [`crate::surface::share`] has it.
+    pub fn fading_waves(&self) -> Waves {
+        self.waves_down_to(self.footprint / SQRT_2)
+    }
+
+    fn waves_down_to(&self, footprint: f64) -> Waves {
+        let p = &self.parameters;
+        let spectrum = Spectrum::new(&self.wind, p.water, p.depth, p.fetch);
+        Waves {
+            spectrum,
+            log_range: spectrum.k_max(footprint).map(|k_max| [spectrum.k_min.ln(), k_max.ln()]),
+            components: p.components as usize,
+            wind_azimuth: p.wind_direction.to_radians(),
+        }
+    }
+}
