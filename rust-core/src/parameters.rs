@@ -1,10 +1,10 @@
 use crate::brdf::{Facets, Lobe, steep_gain};
-use crate::error::refuse;
 use crate::optics::{self, Fresnel, Reflectance};
 use crate::spectrum::Spectrum;
+use crate::vocabulary::check;
 use crate::waves::Waves;
 use crate::wind::{Wind, WindProfile};
-use crate::{Error, SlopeMeasure, Warning, scenario, shadowing, slopes, whitecap, wind};
+use crate::{Error, SlopeMeasure, Warning, shadowing, slopes, whitecap};
 use std::f64::consts::SQRT_2;
 
 /// Salt or no salt.
@@ -73,6 +73,21 @@ pub enum Across {
 }
 
 /// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.
+///
+/// ```
+/// use prob_water::{Parameters, Wind};
+///
+/// let calm = Parameters { wind: Wind::Speed { speed: 0.0, height: 10.0 }, ..Parameters::default() };
+/// assert_eq!(calm.configure()?.wind.friction_velocity, 0.0);
+/// let storm = Parameters { wind: Wind::FrictionVelocity(239.0), ..calm };
+/// let refused = storm.configure().unwrap_err().to_string();
+/// assert_eq!(refused, "friction_velocity = 239 is out of range: allowed is 0 to 238.65 cm/s, the end of Table 1");
+/// # Ok::<(), prob_water::Error>(())
+/// ```
+///
+/// The fields, by the names that scene files, flags and C have too; `wind` is the first four:
+///
+#[doc = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/parameters.md"))]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters {
     /// The wind.
@@ -172,24 +187,7 @@ pub const MOST_COMPONENTS: u32 = 65_536;
 /// More instances than any mean needs.
 pub const MOST_INSTANCES: u64 = 1_000_000_000;
 /// Seeds are below it: float64 holds all of them.
-const SEEDS: u64 = 1 << 53;
-
-/// Refuses a number outside of its parameter's own range, whatever the others are; `shown` is the value as it was given.
-pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Result<(), Error> {
-    let [shortest, longest] = optics::WAVELENGTHS;
-    let (holds, allowed) = match parameter {
-        "wind_direction" => (x.is_finite(), "any finite angle, degrees"),
-        "footprint" | "depth" | "fetch" => (x > 0.0, "above 0 m, up to inf"),
-        "components" => ((1.0..=f64::from(MOST_COMPONENTS)).contains(&x), "1 to 65536"),
-        "instances" => ((1.0..=MOST_INSTANCES as f64).contains(&x), "1 to 1000000000"),
-        "seed" => ((0.0..SEEDS as f64).contains(&x), "0 to 9007199254740991"),
-        "time" => (x.abs() <= scenario::LONGEST_TIME, "finite, at most 1e9 s from 0"),
-        "wavelength" => ((shortest..=longest).contains(&x), "0.2 to 200 micrometres"),
-        "ior" => ((1.0..=4.0).contains(&x), "1 to 4"),
-        _ => return wind::check(parameter, x, shown),
-    };
-    if holds { Ok(()) } else { refuse(parameter, shown, allowed) }
-}
+pub(crate) const SEEDS: u64 = 1 << 53;
 
 impl Water {
     /// The BRDF of a flat surface: facets about the vertical, or about normals that the caller brings, and the whitecaps of
