@@ -6,6 +6,7 @@ mod build;
 mod c_api;
 mod cargo;
 mod compat;
+mod equations;
 mod errors;
 mod figures;
 mod fuzz;
@@ -43,6 +44,8 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   parameters [--check]
                     write the tables of parameters in README.md, docs/ and the plugin's documentation from the one list in
                     rust-core, or only check that they are current
+  equations [--check]
+                    write the index of the report's equations in ARCHITECTURE.md from rust-core's comments, or only check it
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench.py)
   bench fronts      only run time against error, the time to 1 % of rendering included
@@ -92,6 +95,8 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["header", "--check"] => c_api::header(true)?,
         ["parameters"] => parameters::parameters(false)?,
         ["parameters", "--check"] => parameters::parameters(true)?,
+        ["equations"] => equations::equations(false)?,
+        ["equations", "--check"] => equations::equations(true)?,
         ["c-test"] => c_api::c_test()?,
         _ => bail!("`{}` is not understood; `cargo xtask help` lists the commands", words.join(" ")),
     }
