@@ -10,6 +10,7 @@ mod image;
 mod input;
 mod model;
 mod parameters;
+mod parameters_table;
 mod progress;
 mod scenario;
 mod spectrum;
@@ -53,13 +54,14 @@ type Outcome = Result<(), Stop>;
 /// A subcommand: its flags, and what it does with them.
 type Subcommand = (fn() -> Command, fn(&ArgMatches) -> Outcome);
 
-const SUBCOMMANDS: [Subcommand; 6] = [
+const SUBCOMMANDS: [Subcommand; 7] = [
     (wind::command, wind::run),
     (spectrum::command, spectrum::run),
     (surface::command, surface::run),
     (brdf::command, brdf::run),
     (scenario::command, scenario::run),
     (empirical_table::command, empirical_table::run),
+    (parameters_table::command, parameters_table::run),
 ];
 
 /// Runs the command with the words of its line, its own name first. A refusal is one line.

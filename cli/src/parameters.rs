@@ -11,7 +11,8 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
-/// One flag per parameter: its name with dashes, its unit and its default on a surface.
+/// One flag per parameter, as its row of the vocabulary has it: its name with dashes, its unit, what it is, what is allowed
+/// and its default on a surface.
 pub fn flags(surface: Surface) -> impl Iterator<Item = Arg> {
     let defaults = Builder::on(surface).parameters().expect("defaults");
     ENTRIES.iter().map(move |entry| {
@@ -19,7 +20,12 @@ pub fn flags(surface: Surface) -> impl Iterator<Item = Arg> {
         Arg::new(entry.name)
             .long(entry.name.replace('_', "-"))
             .value_name(if entry.unit.is_empty() { "value" } else { entry.unit })
-            .help(format!("{}{}", entry.help, default.unwrap_or_default()))
+            .help(format!(
+                "{}: {}{}",
+                entry.help.replace('`', ""),
+                entry.allowed,
+                default.unwrap_or_default()
+            ))
             .help_heading("Parameters")
             .allow_hyphen_values(true)
     })

@@ -6,9 +6,11 @@ mod build;
 mod c_api;
 mod cargo;
 mod compat;
+mod equations;
 mod errors;
 mod figures;
 mod fuzz;
+mod parameters;
 mod render;
 mod sanitize;
 mod setup;
@@ -39,6 +41,11 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   sanitize          the C programs under valgrind and with sanitizers, the plugin with the address sanitizer
   compat            load the plugin into other versions of Mitsuba (.venv-3.9.0, ...), which must refuse it
   header [--check]  write rust-core/include/prob_water.h, or only check that it is current
+  parameters [--check]
+                    write the tables of parameters in README.md, docs/ and the plugin's documentation from the one list in
+                    rust-core, or only check that they are current
+  equations [--check]
+                    write the index of the report's equations in ARCHITECTURE.md from rust-core's comments, or only check it
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench.py)
   bench fronts      only run time against error, the time to 1 % of rendering included
@@ -86,6 +93,10 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["compat"] => compat::compat()?,
         ["header"] => c_api::header(false)?,
         ["header", "--check"] => c_api::header(true)?,
+        ["parameters"] => parameters::parameters(false)?,
+        ["parameters", "--check"] => parameters::parameters(true)?,
+        ["equations"] => equations::equations(false)?,
+        ["equations", "--check"] => equations::equations(true)?,
         ["c-test"] => c_api::c_test()?,
         _ => bail!("`{}` is not understood; `cargo xtask help` lists the commands", words.join(" ")),
     }

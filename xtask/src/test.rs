@@ -2,7 +2,9 @@
 //!
 //! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
 
-use crate::{build, c_api, compat, errors, figures, fuzz, sanitize, setup, stress, util};
+use crate::{
+    build, c_api, compat, equations, errors, figures, fuzz, parameters, sanitize, setup, stress, util,
+};
 use anyhow::{Result, bail};
 use std::time::{Duration, Instant};
 
@@ -17,9 +19,11 @@ enum Outcome {
 }
 use Outcome::{Passed, Skipped};
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 11] = [
     Step { name: "cargo test", run: cargo_test },
     Step { name: "header check", run: || c_api::header(true).map(|()| Passed) },
+    Step { name: "parameters", run: || parameters::parameters(true).map(|()| Passed) },
+    Step { name: "equations", run: || equations::equations(true).map(|()| Passed) },
     Step { name: "C program", run: || c_api::c_test().map(|()| Passed) },
     Step { name: "valgrind", run: valgrind },
     Step { name: "stress", run: || stress::slice().map(|()| Passed) },

@@ -1,10 +1,11 @@
 //! What a user may choose, checked once and turned into the coefficients of a sea.
 
+use super::vocabulary::check;
 use crate::brdf::lobe::steep_gain;
 use crate::brdf::slopes::GramCharlier;
 use crate::brdf::{Facets, Fresnel, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing, slopes};
-use crate::error::{Error, Warning, refuse};
-use crate::sea::{Body, Wind, WindProfile, whitecap, wind};
+use crate::error::{Error, Warning};
+use crate::sea::{Body, Wind, WindProfile, whitecap};
 
 /// How the report's defective equations are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -13,7 +14,7 @@ pub enum Readings {
     #[default]
     Corrected,
     /// pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand, and neither of the bounds
-    /// by which the corrected readings conserve energy ([`Facets::visible_bound`], steep facets).
+    /// by which the corrected readings conserve energy ([`Facets::masked_area`], steep facets).
     AsPrinted,
 }
 
@@ -62,6 +63,21 @@ pub enum Across {
 }
 
 /// Everything a user may choose. Units: m, m/s, degrees, micrometres; cm/s for the friction velocity.
+///
+/// ```
+/// use prob_water::{Parameters, Wind};
+///
+/// let calm = Parameters { wind: Wind::Speed { speed: 0.0, height: 10.0 }, ..Parameters::default() };
+/// assert_eq!(calm.configure()?.wind.friction_velocity, 0.0);
+/// let storm = Parameters { wind: Wind::FrictionVelocity(239.0), ..calm };
+/// let refused = storm.configure().unwrap_err().to_string();
+/// assert_eq!(refused, "friction_velocity = 239 is out of range: allowed is 0 to 238.65 cm/s, the end of Table 1");
+/// # Ok::<(), prob_water::Error>(())
+/// ```
+///
+/// The fields, by the names that scene files, flags and C have too; `wind` is the first four:
+///
+#[doc = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/parameters.md"))]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameters {
     /// The wind.
@@ -163,24 +179,7 @@ pub const MOST_INSTANCES: u64 = 1_000_000_000;
 /// Times reach to this far from 0, s: beyond, phases would lose their last digits.
 pub const LONGEST_TIME: f64 = 1e9;
 /// Seeds are below it: float64 holds all of them.
-const SEEDS: u64 = 1 << 53;
-
-/// Refuses a number outside of its parameter's own range, whatever the others are; `shown` is the value as it was given.
-pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Result<(), Error> {
-    let [shortest, longest] = fresnel::WAVELENGTHS;
-    let (holds, allowed) = match parameter {
-        "wind_direction" => (x.is_finite(), "any finite angle, degrees"),
-        "footprint" | "depth" | "fetch" => (x > 0.0, "above 0 m, up to inf"),
-        "components" => ((1.0..=f64::from(MOST_COMPONENTS)).contains(&x), "1 to 65536"),
-        "instances" => ((1.0..=MOST_INSTANCES as f64).contains(&x), "1 to 1000000000"),
-        "seed" => ((0.0..SEEDS as f64).contains(&x), "0 to 9007199254740991"),
-        "time" => (x.abs() <= LONGEST_TIME, "finite, at most 1e9 s from 0"),
-        "wavelength" => ((shortest..=longest).contains(&x), "0.2 to 200 micrometres"),
-        "ior" => ((1.0..=4.0).contains(&x), "1 to 4"),
-        _ => return wind::check(parameter, x, shown),
-    };
-    if holds { Ok(()) } else { refuse(parameter, shown, allowed) }
-}
+pub(crate) const SEEDS: u64 = 1 << 53;
 
 impl Water {
     /// The BRDF of a flat surface: facets about the vertical, or about normals that the caller brings, and the whitecaps of

@@ -1,11 +1,15 @@
 //! The one vocabulary of parameters: scene files, flags, C, Python and Rust all use these names.
 
-use super::parameters::{Across, Average, Parameters, Readings, Surface, Water, check};
+use super::parameters::{
+    Across, Average, DRAWN, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, Parameters, Readings, SEEDS,
+    Surface, Water,
+};
+use crate::brdf::fresnel::WAVELENGTHS;
 use crate::brdf::{Fresnel, SlopeMeasure};
-use crate::error::Error;
-use crate::sea::{Body, Wind};
+use crate::error::{Error, refuse};
+use crate::sea::{Body, Wind, wind};
 
-/// A parameter as documentation and help show it.
+/// A parameter: what documentation and help show of it, and how it is read and written.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
     /// Name, with underscores.
@@ -14,67 +18,362 @@ pub struct Entry {
     pub unit: &'static str,
     /// Default, as text.
     pub default: &'static str,
-    /// What it is, in one line.
+    /// What is allowed, in the words of a refusal.
+    pub allowed: &'static str,
+    /// What it is, in one line; words of the vocabulary stand between backticks.
     pub help: &'static str,
+    /// The surfaces it matters to.
+    pub surfaces: &'static [Surface],
+    /// What its values are.
+    pub kind: Kind,
+    access: Access,
 }
 
-const fn entry(name: &'static str, unit: &'static str, default: &'static str, help: &'static str) -> Entry {
-    Entry { name, unit, default, help }
+/// What the values of a parameter are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// A whole number.
+    Whole,
+    /// True or false.
+    Flag,
+    /// One of several words.
+    Word,
 }
 
-/// Every parameter.
+impl Kind {
+    /// Its word in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Number => "number",
+            Kind::Whole => "whole number",
+            Kind::Flag => "true or false",
+            Kind::Word => "word",
+        }
+    }
+}
+
+/// How a parameter is read and written.
+#[derive(Debug, Clone, Copy)]
+struct Access {
+    /// Whether a number is in the parameter's own range, whatever the others are.
+    holds: fn(f64) -> bool,
+    get: fn(&Parameters) -> Option<Value>,
+    set: fn(&mut Builder, &'static str, &Value) -> Result<(), Error>,
+}
+
+/// The access to a field of [`Parameters`]: what it holds, its name, and the range of a number or the choices of a word.
+macro_rules! field {
+    (number, $field:ident, $holds:expr) => {
+        Access {
+            holds: $holds,
+            get: |p| Some(Value::Number(p.$field)),
+            set: |b, name, value| in_range(name, value).map(|x| b.parameters.$field = x),
+        }
+    };
+    (whole, $field:ident, $holds:expr) => {
+        Access {
+            holds: $holds,
+            get: |p| Some(Value::Number(p.$field as f64)),
+            set: |b, name, value| whole_in_range(name, value).map(|n| b.parameters.$field = n),
+        }
+    };
+    (flag, $field:ident) => {
+        Access {
+            holds: |_| true,
+            get: |p| Some(Value::Flag(p.$field)),
+            set: |b, name, value| flag(name, value).map(|x| b.parameters.$field = x),
+        }
+    };
+    (word, $field:ident, $choices:ident) => {
+        Access {
+            holds: |_| true,
+            get: |p| word(&p.$field, &$choices),
+            set: |b, name, value| choice(name, value, &$choices).map(|x| b.parameters.$field = x),
+        }
+    };
+}
+
+/// The access to one of the forms in which [`Wind`] is given: the wind checks its own range, also where no word is used.
+macro_rules! wind {
+    ($name:literal, $pattern:pat => $value:expr, $make:expr) => {
+        Access {
+            holds: |x| wind::check($name, x, x).is_ok(),
+            get: |p| if let $pattern = p.wind { Some(Value::Number($value)) } else { None },
+            set: |b, name, value| in_range(name, value).and_then(|x| b.wind(name, value, $make(x))),
+        }
+    };
+}
+
+const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
+
+/// Every parameter, a row each.
 pub const ENTRIES: [Entry; 24] = [
-    entry("wind_speed", "m/s", "5", "wind speed at wind_height; 0 is calm"),
-    entry("wind_height", "m", "10", "height at which wind_speed is measured, 0.1 to 100"),
-    entry("friction_velocity", "cm/s", "", "friction velocity w* instead of wind_speed, 0 to 238.65"),
-    entry("beaufort", "", "", "Beaufort number instead of wind_speed, 0 to 12"),
-    entry("wind_direction", "degrees", "0", "azimuth the wind comes from, counter-clockwise from +x"),
-    entry(
-        "footprint",
-        "m",
-        "inf",
-        "footprint D: waves shorter than 2 D are facets; 0.15 unless surface is flat",
-    ),
-    entry(
-        "surface",
-        "",
-        "flat",
-        "which surface the facets lie on: flat, instance (drawn waves), ensemble (their mean) or empirical (a table's)",
-    ),
-    entry(
-        "average",
-        "",
-        "power",
-        "what an ensemble's mean is of: power, or the report's mean of f (times the flat cosine)",
-    ),
-    entry(
-        "across",
-        "",
-        "report",
-        "how the empirical model falls off across the plane: as the report's Gaussian, or as the slopes' density: \
-         report or slopes",
-    ),
-    entry("components", "", "5", "the report's M: waves of a drawn surface, 1 to 65536"),
-    entry("instances", "", "50", "the report's N: drawn surfaces of an ensemble"),
-    entry("seed", "", "0", "chooses the random numbers of the drawn surfaces"),
-    entry("time", "s", "0", "time at which waves are drawn"),
-    entry("depth", "m", "inf", "depth of the water"),
-    entry("fetch", "m", "inf", "distance to the shore the wind comes from; matters to 100 km"),
-    entry("wavelength", "micrometres", "0.55", "wavelength, 0.2 to 200"),
-    entry("ior", "", "", "refractive index, 1 to 4; else Hale and Querry's at the wavelength"),
-    entry("water", "", "ocean", "ocean or fresh: sea salt raises the index by 0.006"),
-    entry("fresnel", "", "schlick", "schlick (Eq. 63) or exact"),
-    entry(
-        "slope_measure",
-        "",
-        "angle",
-        "slope density Gaussian in tilt angles (as printed) or in slopes: angle or slope",
-    ),
-    entry("readings", "", "corrected", "corrected or as_printed equations, see docs/model.md"),
-    entry("whitecaps", "", "true", "blend in whitecaps (Eqs. 51, 55)"),
-    entry("shadowing", "", "true", "apply the shadowing function (Eqs. 64-67)"),
-    entry("gram_charlier", "", "true", "apply skewness and kurtosis (Eq. 78)"),
+    Entry {
+        name: "wind_speed",
+        unit: "m/s",
+        default: "5",
+        allowed: "0 to 36.00 m/s at 10 m, 46.93 m/s at 100 m, the end of Table 1",
+        help: "wind speed at `wind_height`; 0 is calm",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: wind!("wind_speed", Wind::Speed { speed, .. } => speed, |speed| Wind::Speed { speed, height: 10.0 }),
+    },
+    Entry {
+        name: "wind_height",
+        unit: "m",
+        default: "10",
+        allowed: "0.1 to 100 m",
+        help: "height at which `wind_speed` is measured",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: Access {
+            holds: |h| wind::check("wind_height", h, h).is_ok(),
+            get: |p| if let Wind::Speed { height, .. } = p.wind { Some(Value::Number(height)) } else { None },
+            // The speed may come later.
+            set: |b, name, value| in_range(name, value).map(|h| b.wind_height = Some(h)),
+        },
+    },
+    Entry {
+        name: "friction_velocity",
+        unit: "cm/s",
+        default: "",
+        allowed: "0 to 238.65 cm/s, the end of Table 1",
+        help: "friction velocity w* instead of `wind_speed`",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: wind!("friction_velocity", Wind::FrictionVelocity(w) => w, Wind::FrictionVelocity),
+    },
+    Entry {
+        name: "beaufort",
+        unit: "",
+        default: "",
+        allowed: "a whole number from 0 to 12",
+        help: "Beaufort number instead of `wind_speed`",
+        surfaces: ALL,
+        kind: Kind::Whole,
+        access: wind!("beaufort", Wind::Beaufort(number) => f64::from(number), |number| Wind::Beaufort(number as u8)),
+    },
+    Entry {
+        name: "wind_direction",
+        unit: "degrees",
+        default: "0",
+        allowed: "any finite angle, degrees",
+        help: "azimuth the wind comes from, counter-clockwise from +x (in Mitsuba: dp_du)",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: field!(number, wind_direction, f64::is_finite),
+    },
+    Entry {
+        name: "footprint",
+        unit: "m",
+        default: "inf",
+        allowed: "above 0 m, up to inf",
+        help: "footprint D: waves shorter than 2 D are facets; 0.15 unless `surface` is `flat`",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: Access {
+            holds: |d| d > 0.0,
+            get: |p| Some(Value::Number(p.footprint())),
+            set: |b, name, value| in_range(name, value).map(|d| b.parameters.footprint = Some(d)),
+        },
+    },
+    Entry {
+        name: "surface",
+        unit: "",
+        default: "flat",
+        allowed: "flat, instance, ensemble, empirical",
+        help: "which surface the facets lie on: the one given (`flat`), drawn waves (`instance`), \
+               their mean, the sea from afar (`ensemble`), or the report's model of that mean, from \
+               a table (`empirical`)",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, surface, SURFACES),
+    },
+    Entry {
+        name: "average",
+        unit: "",
+        default: "power",
+        allowed: "power, report",
+        help: "what an ensemble's mean is of: `power`, or the `report`'s mean of f (times the flat \
+               cosine)",
+        surfaces: &[Surface::Ensemble],
+        kind: Kind::Word,
+        access: field!(word, average, AVERAGES),
+    },
+    Entry {
+        name: "across",
+        unit: "",
+        default: "report",
+        allowed: "report, slopes",
+        help: "how the empirical model falls off across the plane of incidence: as the `report`'s \
+               Gaussian (Eq. 90), or as the `slopes`' density, which follows the full model",
+        surfaces: &[Surface::Empirical],
+        kind: Kind::Word,
+        access: field!(word, across, ACROSS),
+    },
+    Entry {
+        name: "components",
+        unit: "",
+        default: "5",
+        allowed: "1 to 65536",
+        help: "the report's M: waves of a drawn surface",
+        surfaces: &DRAWN,
+        kind: Kind::Whole,
+        access: field!(whole, components, |m| (1.0..=f64::from(MOST_COMPONENTS)).contains(&m)),
+    },
+    Entry {
+        name: "instances",
+        unit: "",
+        default: "50",
+        allowed: "1 to 1000000000",
+        help: "the report's N: drawn surfaces of an ensemble",
+        surfaces: &[Surface::Instance, Surface::Empirical],
+        kind: Kind::Whole,
+        access: field!(whole, instances, |n| (1.0..=MOST_INSTANCES as f64).contains(&n)),
+    },
+    Entry {
+        name: "seed",
+        unit: "",
+        default: "0",
+        allowed: "0 to 9007199254740991",
+        help: "chooses the random numbers of the drawn surfaces",
+        surfaces: &[Surface::Instance, Surface::Empirical],
+        kind: Kind::Whole,
+        access: field!(whole, seed, |seed| (0.0..SEEDS as f64).contains(&seed)),
+    },
+    Entry {
+        name: "time",
+        unit: "s",
+        default: "0",
+        allowed: "finite, at most 1e9 s from 0",
+        help: "time at which waves are drawn",
+        surfaces: &[Surface::Instance],
+        kind: Kind::Number,
+        access: field!(number, time, |t| t.abs() <= LONGEST_TIME),
+    },
+    Entry {
+        name: "depth",
+        unit: "m",
+        default: "inf",
+        allowed: "above 0 m, up to inf",
+        help: "depth of the water",
+        surfaces: &DRAWN,
+        kind: Kind::Number,
+        access: field!(number, depth, |d| d > 0.0),
+    },
+    Entry {
+        name: "fetch",
+        unit: "m",
+        default: "inf",
+        allowed: "above 0 m, up to inf",
+        help: "distance to the shore the wind comes from; matters to 100 km",
+        surfaces: &DRAWN,
+        kind: Kind::Number,
+        access: field!(number, fetch, |d| d > 0.0),
+    },
+    Entry {
+        name: "wavelength",
+        unit: "micrometres",
+        default: "0.55",
+        allowed: "0.2 to 200 micrometres",
+        help: "wavelength of the refractive index and the whitecaps",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: field!(number, wavelength, |x| (WAVELENGTHS[0]..=WAVELENGTHS[1]).contains(&x)),
+    },
+    Entry {
+        name: "ior",
+        unit: "",
+        default: "",
+        allowed: "1 to 4",
+        help: "refractive index; else Hale and Querry's at the wavelength",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: Access {
+            holds: |n| (1.0..=4.0).contains(&n),
+            get: |p| p.ior.map(Value::Number),
+            set: |b, name, value| in_range(name, value).map(|n| b.parameters.ior = Some(n)),
+        },
+    },
+    Entry {
+        name: "water",
+        unit: "",
+        default: "ocean",
+        allowed: "ocean, fresh",
+        help: "sea or fresh water: salt raises the index by 0.006",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, water, WATERS),
+    },
+    Entry {
+        name: "fresnel",
+        unit: "",
+        default: "schlick",
+        allowed: "schlick, exact",
+        help: "reflectance of a facet: `schlick` (Eq. 63) or `exact`",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, fresnel, FRESNELS),
+    },
+    Entry {
+        name: "slope_measure",
+        unit: "",
+        default: "angle",
+        allowed: "angle, slope",
+        help: "slope density Gaussian in tilt angles (`angle`, as printed) or in slopes (`slope`)",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, slope_measure, MEASURES),
+    },
+    Entry {
+        name: "readings",
+        unit: "",
+        default: "corrected",
+        allowed: "corrected, as_printed",
+        help: "`corrected` or `as_printed` equations, see docs/model.md",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, readings, READINGS),
+    },
+    Entry {
+        name: "whitecaps",
+        unit: "",
+        default: "true",
+        allowed: "true or false",
+        help: "blend in whitecaps (Eqs. 51, 55)",
+        surfaces: ALL,
+        kind: Kind::Flag,
+        access: field!(flag, whitecaps),
+    },
+    Entry {
+        name: "shadowing",
+        unit: "",
+        default: "true",
+        allowed: "true or false",
+        help: "apply the shadowing function (Eqs. 64-67)",
+        surfaces: ALL,
+        kind: Kind::Flag,
+        access: field!(flag, shadowing),
+    },
+    Entry {
+        name: "gram_charlier",
+        unit: "",
+        default: "true",
+        allowed: "true or false",
+        help: "apply skewness and kurtosis (Eq. 78)",
+        surfaces: ALL,
+        kind: Kind::Flag,
+        access: field!(flag, gram_charlier),
+    },
 ];
+
+/// Refuses a number outside of its parameter's own range, whatever the others are; `shown` is the value as it was given.
+pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Result<(), Error> {
+    let entry = ENTRIES.iter().find(|e| e.name == parameter).expect("a word of the vocabulary");
+    if (entry.access.holds)(x) { Ok(()) } else { refuse(parameter, shown, entry.allowed) }
+}
 
 /// The parameters that tell the wind: one of them is enough, but for the height of a speed.
 pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
@@ -191,34 +490,7 @@ fn choice<C: Copy>(parameter: &'static str, value: &Value, choices: &[(&str, C)]
 impl Parameters {
     /// The value of a parameter by its name; `None` for one that is not set or not known.
     pub fn get(&self, name: &str) -> Option<Value> {
-        let number = |x: f64| Some(Value::Number(x));
-        match (name, self.wind) {
-            ("wind_speed", Wind::Speed { speed, .. }) => number(speed),
-            ("wind_height", Wind::Speed { height, .. }) => number(height),
-            ("friction_velocity", Wind::FrictionVelocity(w)) => number(w),
-            ("beaufort", Wind::Beaufort(b)) => number(f64::from(b)),
-            ("wind_direction", _) => number(self.wind_direction),
-            ("footprint", _) => number(self.footprint()),
-            ("surface", _) => word(&self.surface, &SURFACES),
-            ("average", _) => word(&self.average, &AVERAGES),
-            ("across", _) => word(&self.across, &ACROSS),
-            ("components", _) => number(f64::from(self.components)),
-            ("instances", _) => number(self.instances as f64),
-            ("seed", _) => number(self.seed as f64),
-            ("time", _) => number(self.time),
-            ("depth", _) => number(self.depth),
-            ("fetch", _) => number(self.fetch),
-            ("wavelength", _) => number(self.wavelength),
-            ("ior", _) => self.ior.and_then(number),
-            ("water", _) => word(&self.water, &WATERS),
-            ("fresnel", _) => word(&self.fresnel, &FRESNELS),
-            ("slope_measure", _) => word(&self.slope_measure, &MEASURES),
-            ("readings", _) => word(&self.readings, &READINGS),
-            ("whitecaps", _) => Some(Value::Flag(self.whitecaps)),
-            ("shadowing", _) => Some(Value::Flag(self.shadowing)),
-            ("gram_charlier", _) => Some(Value::Flag(self.gram_charlier)),
-            _ => None,
-        }
+        ENTRIES.iter().find(|e| e.name == name).and_then(|e| (e.access.get)(self))
     }
 }
 
@@ -305,45 +577,7 @@ impl Builder {
             let known = ENTRIES.map(|e| e.name).join(", ");
             return Err(Error::UnknownParameter { name: name.into(), known });
         };
-        let name = entry.name;
-        let p = &mut self.parameters;
-        match name {
-            "wind_speed" => {
-                let speed = in_range(name, value)?;
-                self.wind(name, value, Wind::Speed { speed, height: 10.0 })?;
-            }
-            "wind_height" => self.wind_height = Some(in_range(name, value)?),
-            "friction_velocity" => {
-                let w = in_range(name, value)?;
-                self.wind(name, value, Wind::FrictionVelocity(w))?;
-            }
-            "beaufort" => {
-                let b = in_range(name, value)?;
-                self.wind(name, value, Wind::Beaufort(b as u8))?;
-            }
-            "wind_direction" => p.wind_direction = in_range(name, value)?,
-            "footprint" => p.footprint = Some(in_range(name, value)?),
-            "surface" => p.surface = choice(name, value, &SURFACES)?,
-            "average" => p.average = choice(name, value, &AVERAGES)?,
-            "across" => p.across = choice(name, value, &ACROSS)?,
-            "components" => p.components = whole_in_range(name, value)?,
-            "instances" => p.instances = whole_in_range(name, value)?,
-            "seed" => p.seed = whole_in_range(name, value)?,
-            "time" => p.time = in_range(name, value)?,
-            "depth" => p.depth = in_range(name, value)?,
-            "fetch" => p.fetch = in_range(name, value)?,
-            "wavelength" => p.wavelength = in_range(name, value)?,
-            "ior" => p.ior = Some(in_range(name, value)?),
-            "water" => p.water = choice(name, value, &WATERS)?,
-            "fresnel" => p.fresnel = choice(name, value, &FRESNELS)?,
-            "slope_measure" => p.slope_measure = choice(name, value, &MEASURES)?,
-            "readings" => p.readings = choice(name, value, &READINGS)?,
-            "whitecaps" => p.whitecaps = flag(name, value)?,
-            "shadowing" => p.shadowing = flag(name, value)?,
-            "gram_charlier" => p.gram_charlier = flag(name, value)?,
-            _ => unreachable!("{name} is in the vocabulary but cannot be set"),
-        }
-        Ok(())
+        (entry.access.set)(self, entry.name, value)
     }
 
     fn wind(&mut self, name: &'static str, value: &Value, wind: Wind) -> Result<(), Error> {
@@ -491,6 +725,79 @@ mod tests {
         for entry in ENTRIES {
             let found = Parameters::default().get(entry.name).map_or(String::new(), |v| v.to_string());
             assert_eq!(found, entry.default, "{}", entry.name);
+        }
+    }
+
+    /// What a refusal says is allowed is the row's text, and each of a row's words is one.
+    #[test]
+    fn allowed_is_as_documented() {
+        for entry in ENTRIES {
+            let refused = match entry.kind {
+                Kind::Number | Kind::Whole => Value::Number(f64::NAN),
+                Kind::Flag => Value::Number(1.0),
+                Kind::Word => Value::Text("nonsense".into()),
+            };
+            let allowed = match Builder::default().set(entry.name, &refused).unwrap_err() {
+                Error::OutOfRange { allowed, .. } | Error::UnknownChoice { allowed, .. } => allowed,
+                Error::WrongType { expected, .. } => expected.into(),
+                error => panic!("{error}"),
+            };
+            assert_eq!(allowed, entry.allowed, "{}", entry.name);
+            if entry.kind == Kind::Word {
+                for word in entry.allowed.split(", ") {
+                    Builder::default().set(entry.name, &Value::Text(word.into())).unwrap();
+                }
+            }
+        }
+        let error = Wind::Speed { speed: f64::NAN, height: 100.0 }.profile().unwrap_err().to_string();
+        let (_, farthest) = ENTRIES[0].allowed.split_once("m at 10 m, ").unwrap_or(("", ""));
+        assert!(error.contains(farthest), "{error}");
+    }
+
+    /// A parameter changes what the surfaces of its row reflect, and nothing of the others.
+    #[test]
+    fn parameters_matter_where_they_are_said_to() {
+        let f = |surface: Surface, (name, value): (&str, Value)| {
+            let mut builder = Builder::on(surface);
+            for (name, x) in
+                [("friction_velocity", 60.0), ("footprint", 0.1), ("components", 8.0), ("time", 0.5)]
+            {
+                builder.set(name, &Value::Number(x)).unwrap();
+            }
+            builder.set(name, &value).unwrap();
+            let water = builder.parameters().unwrap().configure().unwrap();
+            let [i, o, steep] = [[0.6, 0.0, 0.8], [-0.36, 0.48, 0.8], [-0.8, 0.0, 0.6]];
+            match surface {
+                Surface::Flat => water.lobe().map(|lobe| [lobe.eval(i, o, None), lobe.eval(i, steep, None)]),
+                Surface::Instance => crate::InstanceLobe::new(&water).map(|lobe| {
+                    let sum = |o| (0..999).map(|n| lobe.eval(i, o, [f64::from(n), 0.3])).sum::<f64>();
+                    [o, steep].map(sum)
+                }),
+                _ => crate::EnsembleLobe::new(&water).map(|lobe| [lobe.eval(i, o), lobe.eval(i, steep)]),
+            }
+            .unwrap()
+        };
+        // The wind is given as its friction velocity; the number of draws matters to statistics alone.
+        let others = ["wind_speed", "wind_height", "friction_velocity", "beaufort", "surface", "instances"];
+        for surface in [Surface::Flat, Surface::Instance, Surface::Ensemble] {
+            let usual = f(surface, ("seed", Value::Number(0.0)));
+            for entry in ENTRIES.iter().filter(|entry| !others.contains(&entry.name)) {
+                let value = match (entry.name, entry.kind) {
+                    ("wind_direction", _) => Value::Number(60.0),
+                    ("fetch", _) => Value::Number(3e4),
+                    (_, Kind::Number) => Value::Number(2.0),
+                    (_, Kind::Whole) => Value::Number(7.0),
+                    (_, Kind::Flag) => Value::Flag(false),
+                    (_, Kind::Word) => Value::Text(entry.allowed.rsplit(", ").next().unwrap().into()),
+                };
+                let matters = f(surface, (entry.name, value.clone())) != usual;
+                assert_eq!(
+                    matters,
+                    entry.surfaces.contains(&surface),
+                    "{} = {value} on {surface:?}",
+                    entry.name
+                );
+            }
         }
     }
 
