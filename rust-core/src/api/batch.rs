@@ -165,6 +165,18 @@ pub type Coordinates<'a> = [&'a [f32]; 3];
 
 /// Rows of directions, coordinate by coordinate: to the source, to the observer, and the wave normals (up where there are
 /// none).
+///
+/// ```
+/// use prob_water::{Parameters, batch::Columns};
+///
+/// let lobe = Parameters::default().configure()?.lobe()?.cast();
+/// let [x, y, z] = [[0.0f32, 0.6], [0.0, 0.0], [1.0, 0.8]];
+/// let back = [0.0f32, -0.6];
+/// let mut f = [0.0f32; 2];
+/// Columns::new([&x, &y, &z], [&back, &y, &z], None)?.eval(&lobe, &mut f)?;
+/// assert!(f.iter().all(|f| *f > 0.01));
+/// # Ok::<(), prob_water::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Columns<'a> {
     to_source: Coordinates<'a>,

@@ -30,6 +30,16 @@ pub struct Engagement {
 
 impl Engagement {
     /// Time in s, positions in m: all finite, laser and observers above the mean surface, the beam downwards.
+    ///
+    /// ```
+    /// use prob_water::{Aim, Engagement};
+    ///
+    /// let [laser, observer] = [[-50.0, 0.0, 86.6], [50.0, 0.0, 86.6]];
+    /// Engagement::new(0.0, laser, Aim::Target([0.0; 3]), &[observer])?;
+    /// let upwards = Engagement::new(0.0, laser, Aim::Direction([1.0, 0.0, 0.1]), &[observer]);
+    /// assert!(upwards.unwrap_err().to_string().contains("a beam that points down"));
+    /// # Ok::<(), prob_water::Error>(())
+    /// ```
     pub fn new(time: f64, laser: [f64; 3], aim: Aim, observers: &[[f64; 3]]) -> Result<Self, Error> {
         if !(-LONGEST_TIME..=LONGEST_TIME).contains(&time) {
             return refuse("time", time, "finite, at most 1e9 s from 0");
