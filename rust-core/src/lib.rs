@@ -16,8 +16,7 @@
 //! assert!((f - 0.1382).abs() < 1e-4, "{f}");
 //! ```
 //!
-//! One room, a folder, for each part of the work. A room uses only those above it in this list, which `cargo xtask tidy` holds
-//! it to:
+//! One room, a folder, for each part of the work. A room uses only those above it in this list:
 //!
 //! | room | holds | equations |
 //! | --- | --- | --- |

@@ -10,7 +10,7 @@
 //!
 //! `mean of f = E[A f V_i V_o]/cos theta_i`
 //!
-//! with the area A shown to the source per level area, and V whether a wave stands in the way (cast.rs). Its ratio to
+//! with the area A shown to the source per level area, and V whether a wave stands in the way (surface/ray.rs). Its ratio to
 //! the same without V needs far fewer draws than the mean itself. Between, one passes into the other.
 
 use super::planes::Planes;
