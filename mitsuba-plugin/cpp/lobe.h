@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "replay.h"
 #include <drjit/math.h>
 #include <mitsuba/core/vector.h>
 
@@ -22,13 +23,6 @@ template <typename A, typename B> A smaller(const A &a, const B &b) {
     A c(b);
     return drjit::select(a < c, a, c);
 }
-
-/// Which of the two lobes take part.
-struct Parts {
-    bool facets, whitecaps;
-    uint32_t bits() const { return (facets ? 1u : 0u) | (whitecaps ? 2u : 0u); }
-    bool none() const { return !facets && !whitecaps; }
-};
 
 template <typename Float_> struct Lobe {
     using Float = Float_;

@@ -1,6 +1,6 @@
 /**
- * What changes from place to place, as Dr.Jit expressions: facets for a footprint, the twin of the Rust core's
- * facet_table.rs, and one drawn sea, that of instance_lobe.rs.
+ * What changes from place to place, as Dr.Jit expressions: one drawn sea, the core's
+ * instance_lobe.rs.
  */
 #pragma once
 
@@ -9,56 +9,6 @@
 #include <mitsuba/core/fwd.h>
 
 namespace prob_water {
-
-/// The facets of any footprint.
-template <typename Float_> struct FacetTable {
-    using Float = Float_;
-    using Buffer = mitsuba::DynamicBuffer<Float>;
-    using UInt32 = drjit::uint32_array_t<Float>;
-    /// sigma_u, sigma_c, steep_gain, bound, the proposal's two, and what fills a packet.
-    using Row = drjit::Array<Float, 8>;
-
-    /// 0 where the footprint is the same everywhere.
-    uint32_t rows = 0;
-    bool bounded = false;
-    float first = 0.f, inv_step = 0.f;
-    Float scale;
-    Buffer cells;
-
-    explicit FacetTable(const FacetRows &t) : rows((uint32_t) t.cells.size() / 8), bounded(t.bounded) {
-        if (rows == 0)
-            return;
-        first = (float) t.first;
-        inv_step = (float) (1. / t.step);
-        scale = drjit::opaque<Float>((float) t.scale);
-        cells = drjit::load<Buffer>(t.cells.data(), t.cells.size());
-    }
-
-    DRJIT_STRUCT(FacetTable, scale, cells)
-
-    /// Gives the lobe another footprint, in m.
-    void set(Lobe<Float> &lobe, const Float &footprint) const {
-        namespace dr = drjit;
-        Float place = smaller(larger((dr::log(larger(footprint, 1e-30f)) - first) * inv_step, 0.f), (float) (rows - 1));
-        UInt32 node = dr::minimum(UInt32(place), rows - 2);
-        Row a = dr::gather<Row>(cells, node), b = dr::gather<Row>(cells, node + 1u);
-        Row row = dr::fmadd(Row(place - Float(node)), b - a, a);
-        lobe.sigma_u = row[0];
-        lobe.sigma_c = row[1];
-        lobe.inv_width_u = float(Lobe<Float>::InvWidth) * dr::rcp(row[0]);
-        lobe.inv_width_c = float(Lobe<Float>::InvWidth) * dr::rcp(row[1]);
-        lobe.inv_width_u_lo = lobe.inv_width_c_lo = 0.f;
-        lobe.scale = scale * dr::rcp(row[0] * row[1]);
-        lobe.steep_gain = row[2];
-        lobe.bound = row[3];
-        lobe.bounded = bounded;
-        lobe.proposal_u = row[4];
-        lobe.proposal_c = row[5];
-        lobe.inv_proposal_u = dr::rcp(row[4]);
-        lobe.inv_proposal_c = dr::rcp(row[5]);
-        lobe.proposal_norm = 8.f * dr::Pi<float> * row[4] * row[5];
-    }
-};
 
 /// One drawn sea at one time.
 template <typename Float_> struct Drawn {

@@ -14,9 +14,9 @@
 #include "prob-water-mitsuba/src/lib.rs.h"
 #include "rust/cxx.h"
 
-#include "afar.h"
 #include "empirical.h"
 #include "place.h"
+#include "replay.h"
 #include "sea.h"
 #include "words.h"
 
@@ -59,9 +59,8 @@ public:
     MI_IMPORT_TYPES(Texture)
 
     using Lobe = prob_water::Lobe<Float>;
-    using Afar = prob_water::Afar<Float>;
+    using Replay = prob_water::Replay<Float>;
     using Tabled = prob_water::Tabled<Float>;
-    using FacetTable = prob_water::FacetTable<Float>;
     using Drawn = prob_water::Drawn<Float>;
     using Parts = prob_water::Parts;
     using Wide = typename Drawn::Wide;
@@ -244,7 +243,7 @@ private:
     /// places are alike.
     struct TracedPlace {
         Lobe lobe;
-        typename Lobe::Frame frame;
+        typename Replay::Inputs inputs;
     };
     struct ScalarPlace {
         ProbWaterSpot spot;
@@ -364,12 +363,12 @@ private:
         prob_water::Coefficients c = water.coefficients();
         m_lobe = Lobe(c);
         m_own_footprint = (ScalarFloat) water.number("footprint");
-        m_drawn_waves = water.kind() == prob_water::Kind::Instance;
+        m_kind = water.kind();
+        m_drawn_waves = m_kind == prob_water::Kind::Instance;
         m_places = m_drawn_waves || m_whitecap_texture || varies();
         if constexpr (dr::is_jit_v<Float>) {
-            m_afar = Afar(water.waves());
+            m_replay = Replay(water.kernels(m_whitecap_texture.get() != nullptr));
             m_tabled = Tabled(water.fine_grid(), c);
-            m_facets = FacetTable(water.facet_rows());
             m_drawn = Drawn(water.drawn_waves());
             // Copies from here to there keep their memory up to the next kernel, or to this.
             dr::sync_thread();
@@ -426,19 +425,19 @@ private:
         };
         if constexpr (dr::is_jit_v<Float>) {
             at.lobe = m_lobe;
-            Float d;
-            if (varies()) {
+            Float &d = at.inputs.footprint, &share = at.inputs.whitecap;
+            if (varies())
                 d = footprint(si, active);
-                m_facets.set(at.lobe, d);
-            }
             if (m_drawn_waves) {
                 auto [n, whitecap] = m_drawn.at(along(si.sh_frame.s), along(si.sh_frame.t), varies() ? &d : nullptr);
-                at.frame = at.lobe.frame(n);
+                at.inputs.normal = n;
                 if (m_whitecaps)
-                    at.lobe.set_whitecaps(whitecap);
+                    share = whitecap;
             }
             if (m_whitecap_texture)
-                at.lobe.set_whitecaps(within_one(m_whitecap_texture->eval_1(si, active)));
+                share = within_one(m_whitecap_texture->eval_1(si, active));
+            if (m_drawn_waves || m_whitecap_texture)
+                at.lobe.set_whitecaps(share);
         } else if (m_places) {
             constexpr float None = std::numeric_limits<float>::quiet_NaN();
             ProbWaterPlace place{ { 0., 0. }, None, None };
@@ -467,32 +466,30 @@ private:
             return m_places ? prob_water_spot_whitecaps(&at.spot) : m_lobe.whitecap_fraction;
     }
 
+    /// The result of a program of the core's, for a path between two directions.
+    Float run(typename Replay::Program program, Enabled on, const Here &at, const Vector3f &wi, const Vector3f &wo) const {
+        typename Replay::Inputs inputs = at.inputs;
+        // The density is of draws from wi, whichever way the light goes.
+        bool turned = program != Replay::Pdf && on.to_light;
+        bool ordered = m_kind == prob_water::Kind::Ensemble;
+        inputs.source = ordered && turned ? wo : wi;
+        inputs.observer = ordered && turned ? wi : wo;
+        inputs.cosine = wo.z();
+        return m_replay.run(program, on.parts, inputs)[0];
+    }
+
     /// f cos(theta_o) of facets and whitecaps in traced variants.
-    template <bool Fine>
-    Float value(Enabled on, const Here &at, const typename Lobe::Geometry &g, const Vector3f &wi, const Vector3f &wo) const {
-        const Vector3f &light = on.to_light ? wo : wi, &observer = on.to_light ? wi : wo;
+    Float value(typename Replay::Program program, Enabled on, const Here &at, const Vector3f &wi, const Vector3f &wo) const {
         if (m_tabled.incidences)
-            return m_tabled.eval(at.lobe, light, observer, wo.z(), on.parts);
-        return m_afar.rows ? m_afar.eval(at.lobe, light, observer, wo.z(), on.parts)
-                           : at.lobe.template eval<Fine>(g, on.parts);
+            return m_tabled.eval(at.lobe, on.to_light ? wo : wi, on.to_light ? wi : wo, wo.z(), on.parts);
+        return run(program, on, at, wi, wo);
     }
 
     /// f cos(theta_o) and density of facets and whitecaps, as far as wanted.
     template <bool Value, bool Pdf>
     std::pair<Float, Float> surface(Enabled on, const Here &at, const Vector3f &wi, const Vector3f &wo) const {
         if constexpr (dr::is_jit_v<Float>) {
-            auto run = [&](auto fine) {
-                auto g = at.lobe.template geometry<fine()>(wi, wo, at.frame);
-                Float value = 0.f, pdf = 0.f;
-                if (Value)
-                    value = this->template value<fine()>(on, at, g, wi, wo);
-                if (Pdf)
-                    pdf = at.lobe.pdf(g, on.parts);
-                return std::pair<Float, Float>(value, pdf);
-            };
-            // Gram-Charlier's polynomial asks for digits to spare, and a turn by the wind where its two deviations differ.
-            bool closed = !m_afar.rows && !m_tabled.incidences, fine = m_lobe.gram_charlier || m_lobe.oblique();
-            return Value && closed && fine ? run(std::true_type()) : run(std::false_type());
+            return { Value ? value(Replay::Eval, on, at, wi, wo) : 0.f, Pdf ? run(Replay::Pdf, on, at, wi, wo) : 0.f };
         } else {
             const prob_water::Water *sea = &water();
             uint32_t bits = on.parts.bits();
@@ -539,7 +536,12 @@ private:
         Mask whitecap = false;
         if (!on.parts.none()) {
             if constexpr (dr::is_jit_v<Float>) {
-                std::tie(bs.wo, whitecap) = at.lobe.sample(si.wi, sample1, sample2, on.parts, at.frame);
+                typename Replay::Inputs inputs = at.inputs;
+                inputs.source = si.wi;
+                inputs.random = { sample1, sample2.x(), sample2.y() };
+                auto drawn = m_replay.run(Replay::Draw, on.parts, inputs);
+                bs.wo = { drawn[0], drawn[1], drawn[2] };
+                whitecap = drawn[3] > 0.f;
             } else if (!diffuse) {
                 float u[3] = { sample1, sample2.x(), sample2.y() };
                 ProbWaterSample s{};
@@ -563,9 +565,8 @@ private:
         }
         if constexpr (dr::is_jit_v<Float>) {
             // A weight divides two Gaussians: it needs no digits to spare.
-            auto g = at.lobe.template geometry<false>(si.wi, bs.wo, at.frame);
-            bs.pdf = at.lobe.pdf(g, on.parts);
-            value = this->template value<false>(on, at, g, si.wi, bs.wo);
+            bs.pdf = run(Replay::Pdf, on, at, si.wi, bs.wo);
+            value = this->value(Replay::Weight, on, at, si.wi, bs.wo);
         }
         active &= bs.pdf > 0.f;
         return finish(bs, spectrum(value / bs.pdf), whitecap, active);
@@ -611,13 +612,13 @@ private:
     std::vector<ScalarFloat> m_shares;
     ScalarFloat m_own_footprint = 0.f, m_pixel_angle = 0.f;
     bool m_pixel = false, m_whitecaps = false, m_drawn_waves = false, m_places = false, m_lent = false;
+    prob_water::Kind m_kind = prob_water::Kind::Flat;
     Lobe m_lobe;
-    Afar m_afar;
+    Replay m_replay;
     Tabled m_tabled;
-    FacetTable m_facets;
     Drawn m_drawn;
 
-    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_lobe, m_afar, m_tabled, m_facets, m_drawn)
+    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_lobe, m_replay, m_tabled, m_drawn)
 };
 
 extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn fn) {

@@ -40,8 +40,8 @@ impl Water {
     fn at(&self, place: &Place) -> Spot {
         let mut lobe = self.lobe;
         let footprint = (!place.footprint.is_nan()).then(|| f64::from(place.footprint));
-        if let (Some(table), Some(footprint)) = (&self.facets, footprint) {
-            table.set(&mut lobe.facets, footprint);
+        if let (Some(table), Some(_)) = (&self.single_facets, footprint) {
+            table.set(&mut lobe.facets, place.footprint);
         }
         let mut n = None;
         if let Waves::Drawn(sea) = &self.waves {
@@ -106,6 +106,12 @@ pub extern "C" fn prob_water_spot(water: &Water, place: &Place, spot: &mut std::
 #[unsafe(no_mangle)]
 pub extern "C" fn prob_water_spot_whitecaps(spot: &Spot) -> f32 {
     spot.lobe.whitecap_fraction
+}
+
+/// rho of Eqs. 61-63.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_reflectance(water: &Water, cos: f32) -> f32 {
+    water.lobe.facets.reflectance.eval(f64::from(cos)) as f32
 }
 
 /// As [`prob_water_bsdf_eval`].

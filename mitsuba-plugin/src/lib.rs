@@ -3,10 +3,12 @@
 mod evaluate;
 mod surface;
 
+use prob_water::kernels::Places;
 use prob_water::real::{IERFC, IERFC_END};
+use prob_water::simd::recorded::Instruction;
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
 use prob_water::{
-    EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Lobe, Surface, Table, whitecap,
+    EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Kernels, Lobe, Surface, Table, whitecap,
 };
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -53,15 +55,56 @@ mod ffi {
         Empirical,
     }
 
-    /// What `prob_water::ensemble_lobe::MeanLobe` holds, for `surface = "ensemble"`; no rows where the sea is level.
-    struct Waves {
-        rows: u32,
-        steps: [f32; 2],
-        cells: Vec<f32>,
-        sigma: [f32; 2],
-        foam: [f32; 3],
-        /// `average = "report"`.
-        report: bool,
+    /// `prob_water::simd::recorded::Operation`, in its order.
+    #[repr(u32)]
+    enum Operation {
+        Constant,
+        Coefficient,
+        Input,
+        Add,
+        Subtract,
+        Multiply,
+        Divide,
+        Negate,
+        Absolute,
+        SquareRoot,
+        Reciprocal,
+        ReciprocalRoot,
+        MultiplyAdd,
+        Residual,
+        Less,
+        And,
+        Or,
+        Not,
+        Select,
+        Round,
+        ScaleByPowerOf2,
+        Exponent,
+        FlipSign,
+        Detach,
+        Floor,
+        Lookup,
+        Element,
+    }
+
+    /// `prob_water::simd::recorded::Program`: operation and three operands of every instruction, and its outputs.
+    struct Program {
+        instructions: Vec<u32>,
+        outputs: Vec<u32>,
+    }
+
+    /// `prob_water::numeric::packets::Packets`.
+    struct Packets {
+        width: u32,
+        half: bool,
+        numbers: Vec<f32>,
+    }
+
+    /// `prob_water::Kernels`.
+    struct Kernels {
+        coefficients: Vec<f32>,
+        tables: Vec<Packets>,
+        programs: Vec<Program>,
     }
 
     /// What `prob_water::EmpiricalLobe::fine_grid` gives, for `surface = "empirical"`; else no steps.
@@ -78,15 +121,6 @@ mod ffi {
         sigmas: [f64; 2],
         density_step: [f64; 2],
         densities: Vec<f32>,
-    }
-
-    /// What `prob_water::FacetTable` holds, where the footprint changes from place to place; else no cells.
-    struct FacetRows {
-        first: f64,
-        step: f64,
-        scale: f64,
-        bounded: bool,
-        cells: Vec<f32>,
     }
 
     /// The waves of `surface = "instance"`: eight numbers each, as place.h reads them.
@@ -117,9 +151,9 @@ mod ffi {
         type Water;
         fn kind(self: &Water) -> Kind;
         fn coefficients(self: &Water) -> Coefficients;
-        fn waves(self: &Water) -> Waves;
         fn fine_grid(self: &Water) -> FineGrid;
-        fn facet_rows(self: &Water) -> FacetRows;
+        /// `whitecaps`: their probability comes with every place.
+        fn kernels(self: &Water, whitecaps: bool) -> Kernels;
         fn drawn_waves(self: &Water) -> DrawnWaves;
         /// Value of a numeric parameter in force, by name; NaN for one that is not set.
         fn number(self: &Water, name: &str) -> f64;
@@ -208,8 +242,9 @@ impl Options {
             }
         };
         let facets = (!varied.is_empty()).then(|| FacetTable::new(&water));
+        let single_facets = facets.as_ref().map(|table| table.cast());
         let table = self.table.as_ref().map(|(name, _)| name.clone());
-        Ok(Box::new(Water { water, precise: lobe, lobe: lobe.cast(), waves, facets, table }))
+        Ok(Box::new(Water { water, precise: lobe, lobe: lobe.cast(), waves, facets, single_facets, table }))
     }
 }
 
@@ -222,7 +257,8 @@ pub struct Water {
     lobe: Lobe<f32>,
     waves: Waves,
     /// Where the footprint changes from place to place.
-    facets: Option<FacetTable>,
+    facets: Option<FacetTable<f64>>,
+    single_facets: Option<FacetTable<f32>>,
     /// The file of a table that is not the core's own.
     table: Option<String>,
 }
@@ -284,26 +320,26 @@ impl Water {
         }
     }
 
-    fn waves(&self) -> ffi::Waves {
-        let single = |x: f64| x as f32;
-        let afar = if let Waves::Afar(afar) = &self.waves { afar.waves.as_ref() } else { None };
-        match afar {
-            Some(mean) => ffi::Waves {
-                rows: mean.rows,
-                steps: mean.inv_step.map(|inverse| single(1.0 / inverse)),
-                cells: mean.cells.numbers.to_vec(),
-                sigma: mean.sigma.map(single),
-                foam: mean.foam.map(single),
-                report: mean.report,
-            },
-            None => ffi::Waves {
-                rows: 0,
-                steps: [0.0; 2],
-                cells: vec![],
-                sigma: [0.0; 2],
-                foam: [0.0; 3],
-                report: false,
-            },
+    fn kernels(&self, whitecaps: bool) -> ffi::Kernels {
+        let mean = if let Waves::Afar(afar) = &self.waves { afar.waves.as_ref() } else { None };
+        let normal = matches!(self.waves, Waves::Drawn(_));
+        let places = Places { normal, whitecap: whitecaps || normal, footprint: self.facets.as_ref() };
+        let Kernels { recording, programs } = Kernels::new(&self.precise, mean, places);
+        let word = |(operation, [a, b, c]): &Instruction| [*operation as u32, *a, *b, *c];
+        ffi::Kernels {
+            coefficients: recording.coefficients,
+            tables: recording
+                .tables
+                .iter()
+                .map(|t| ffi::Packets { width: t.width, half: t.half, numbers: t.numbers.to_vec() })
+                .collect(),
+            programs: programs
+                .iter()
+                .map(|p| ffi::Program {
+                    instructions: p.instructions.iter().flat_map(word).collect(),
+                    outputs: p.outputs.clone(),
+                })
+                .collect(),
         }
     }
 
@@ -337,14 +373,6 @@ impl Water {
             density_step: g.density_step,
             densities: g.densities,
         }
-    }
-
-    fn facet_rows(&self) -> ffi::FacetRows {
-        let Some(table) = &self.facets else {
-            return ffi::FacetRows { first: 0.0, step: 1.0, scale: 0.0, bounded: false, cells: vec![] };
-        };
-        let ([first, step], scale, cells) = table.table();
-        ffi::FacetRows { first, step, scale, bounded: table.bounded, cells }
     }
 
     fn drawn_waves(&self) -> ffi::DrawnWaves {

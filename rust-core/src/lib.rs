@@ -54,7 +54,9 @@ pub use config::{Across, Average, Parameters, Readings, Surface, Water, vocabula
 pub use empirical::{EmpiricalLobe, Estimate, Table, planes, table, table_file};
 pub use error::{Error, Warning};
 pub use numeric::{Real, Scalar, real};
-pub use render::{EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, ensemble_lobe, grid, mesh};
+pub use render::{
+    EnsembleLobe, FacetTable, InstanceLobe, Kernels, Layout, Mesh, ensemble_lobe, grid, kernels, mesh,
+};
 pub use sea::{Body, Wind, WindProfile, spectrum, whitecap, wind};
 pub use statistics::{Aim, Engagement, Ensemble, Exact, Presence, Proposal, Statistics, ensemble};
 pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

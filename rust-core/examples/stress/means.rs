@@ -33,6 +33,7 @@ pub fn facets_by_footprint(draw: &mut Draw, tally: &mut Tally) {
     let sea = draw.flat_sea();
     let water = sea.configure().expect("within the ranges of the vocabulary");
     let table = FacetTable::new(&water);
+    let single_table: FacetTable<f32> = table.cast();
     for _ in 0..16 * ROWS {
         let footprint = match draw.pick(8) {
             0 => draw.one_of(&[0.0, 5e-324, 1e-12, f64::MAX, f64::INFINITY, f64::NAN]),
@@ -41,7 +42,7 @@ pub fn facets_by_footprint(draw: &mut Draw, tally: &mut Tally) {
         let mut lobe = water.local_lobe();
         table.set(&mut lobe.facets, footprint);
         let mut single = water.local_lobe().cast::<f32>();
-        table.set(&mut single.facets, footprint);
+        single_table.set(&mut single.facets, footprint as f32);
         let [i, o] = pair(draw);
         let [i32, o32] = [i, o].map(|v| v.map(|x| x as f32));
         let found = [lobe.eval(i, o, up()), single.eval(i32, o32, up()).into(), lobe.pdf(i, o, up())];

@@ -17,16 +17,14 @@ pub fn up<T: Real>() -> Vec3<T> {
     [T::of(0.0), T::of(0.0), T::of(1.0)]
 }
 
-/// The cosine of the angle to a wave normal, or a level surface's; to the last digit also where it is small, since f goes
-/// with its inverse.
+/// The cosine of the angle to a wave normal; in extended precision to the last digit also where it is small, since f goes with its
+/// inverse.
 #[inline(always)]
-pub(crate) fn cosine<T: Real>(v: Vec3<T>, n: Option<Vec3<T>>) -> T {
-    let Some(n) = n else { return v[2] };
-    let [x, y, z] = [0, 1, 2].map(|k| T::Extended::from_real(v[k]));
-    let [nx, ny, nz] = [0, 1, 2].map(|k| T::Extended::from_real(n[k]));
-    let one = T::Extended::from_real(T::of(1.0));
-    let flat = T::Extended::sum_of_products(x, nx, y, ny);
-    T::Extended::sum_of_products(z, nz, flat, one).normalize().to_real()
+pub(crate) fn cosine<T: Real, E: Extended<T>>(v: Vec3<T>, n: Vec3<T>) -> T {
+    let [x, y, z] = [E::from_real(v[0]), E::from_real(v[1]), E::from_real(v[2])];
+    let [nx, ny, nz] = [E::from_real(n[0]), E::from_real(n[1]), E::from_real(n[2])];
+    let one = E::from_real(T::of(1.0));
+    E::sum_of_products(z, nz, E::sum_of_products(x, nx, y, ny), one).normalize().to_real()
 }
 
 /// `f`, or not a number where a coordinate of the directions or one of their cosines to the normal is none: comparisons hide
@@ -252,7 +250,7 @@ impl<T: Real> Facets<T> {
         let slope = [u * inv_n, c * inv_n];
         let tan2 = T::to_density(slope[0].mul_add(slope[0], slope[1] * slope[1]));
         Geometry {
-            cos: [cosine(i, Some(n)), cosine(o, Some(n))],
+            cos: [cosine::<T, E>(i, n), cosine::<T, E>(o, n)],
             cos_zeta,
             tan2,
             inv_cos2: one + tan2,

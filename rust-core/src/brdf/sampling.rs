@@ -15,7 +15,7 @@
 
 use super::lobe::{Facets, GRAZING, Geometry, Lobe, Parts};
 use super::slopes::WIDTH;
-use crate::numeric::real::dot;
+use crate::numeric::real::{Extended, dot};
 use crate::numeric::{Real, Scalar, Vec3};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, LOG2_E, PI};
 
@@ -226,8 +226,17 @@ impl<T: Real> Lobe<T> {
         if !parts.facets && !parts.whitecaps {
             return T::of(0.0);
         }
-        // An oblique wind turns a sum of parts that nearly cancel: tilts to the last digit cost scalars nothing.
-        let g = self.facets.geometry::<T::Plain>(i, o, n.into());
+        // An oblique wind turns a sum of parts that nearly cancel.
+        match self.facets.wind.quadrant {
+            Some(_) => self.pdf_in::<T::Plain>(i, o, n.into(), parts),
+            None => self.pdf_in::<T::Extended>(i, o, n.into(), parts),
+        }
+    }
+
+    /// The same in the digits of `E`.
+    #[inline(always)]
+    fn pdf_in<E: Extended<T>>(&self, i: Vec3<T>, o: Vec3<T>, n: Option<Vec3<T>>, parts: Parts) -> T {
+        let g = self.facets.geometry::<E>(i, o, n);
         let diffuse = || g.cos[1] * T::of(FRAC_1_PI);
         g.above_horizon(match parts {
             Parts { whitecaps: false, .. } => self.facets.pdf(&g),

@@ -1,9 +1,10 @@
 //! The BRDF of a level surface that reflects, place by place, as one drawn sea does: `surface = "instance"`.
 
-use crate::brdf::lobe::cosine;
+use crate::brdf::lobe::{cosine, up};
 use crate::brdf::{Lobe, Parts};
 use crate::config::Water;
 use crate::error::Error;
+use crate::numeric::real::Extended;
 use crate::numeric::{Real, Vec3};
 use crate::statistics::Ensemble;
 use crate::surface::{Component, Surface, Waves};
@@ -84,10 +85,15 @@ impl<T: Real> Lobe<T> {
     /// `f cos(theta_o)` of some of its parts, of a level surface whose waves have the normal `n` here:
     /// `f_N (N.i)(N.o)/(N_z cos theta_i)`, 1/sr; 0 at or below the horizon.
     pub fn on_wave(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
-        let (zero, n) = (T::of(0.0), n.into());
-        let level = n.map_or(T::of(1.0), |n| n[2]);
-        let seen = cosine(i, n) * cosine(o, n) / T::max(level * i[2], T::TINY);
+        let n = n.into();
         let f = self.eval_parts(i, o, n, parts);
+        self.shown_by_wave::<T::Extended>(f, i, o, n.unwrap_or_else(up))
+    }
+
+    /// `f cos(theta_o)` of a level surface for f about the normal `n` of its waves.
+    pub(crate) fn shown_by_wave<E: Extended<T>>(&self, f: T, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+        let zero = T::of(0.0);
+        let seen = cosine::<T, E>(i, n) * cosine::<T, E>(o, n) / T::max(n[2] * i[2], T::TINY);
         let value = T::min(f * T::max(seen, zero), T::MAX);
         // What is not a number in f is none here, also below the level horizon.
         zero.mul_add(f, T::select(T::lt(zero, i[2]) & T::lt(zero, o[2]), value, zero))

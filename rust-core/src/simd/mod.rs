@@ -10,6 +10,7 @@ mod avx512;
 mod double_float;
 mod portable;
 mod real;
+pub mod recorded;
 mod vector;
 
 pub(crate) use real::Lanes;

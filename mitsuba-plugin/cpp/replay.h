@@ -1,0 +1,129 @@
+/**
+ * The core's closed forms in traced variants: programs that it recorded (its kernels.rs), repeated on Dr.Jit arrays.
+ */
+#pragma once
+
+#include <drjit/math.h>
+#include <mitsuba/core/fwd.h>
+#include <mitsuba/core/vector.h>
+#include <vector>
+
+namespace prob_water {
+
+/// Which of the two lobes take part.
+struct Parts {
+    bool facets, whitecaps;
+    uint32_t bits() const { return (facets ? 1u : 0u) | (whitecaps ? 2u : 0u); }
+    bool none() const { return !facets && !whitecaps; }
+};
+
+template <typename Float_> struct Replay {
+    using Float = Float_;
+    using Mask = drjit::mask_t<Float>;
+    using Int = drjit::int32_array_t<Float>;
+    using UInt32 = drjit::uint32_array_t<Float>;
+    using Buffer = mitsuba::DynamicBuffer<Float>;
+    using HalfBuffer = mitsuba::DynamicBuffer<drjit::float16_array_t<Float>>;
+    using Packet = drjit::Array<Float, 8>;
+    using Vector3f = mitsuba::Vector<Float, 3>;
+
+    /// As the core's kernels.rs has them.
+    enum Program { Eval, Weight, Pdf, Draw, PerParts };
+
+    /// What a program is given, in the order of the core's `kernels::inputs`.
+    struct Inputs {
+        Vector3f source = 0.f, observer = 0.f, random = 0.f, normal = 0.f;
+        Float footprint = 0.f, whitecap = 0.f, cosine = 0.f;
+    };
+
+    /// Numbers are data, so that a change does not compile new kernels; decisions were made while recording.
+    std::vector<Float> coefficients;
+    std::vector<Buffer> tables;
+    rust::Vec<prob_water::Program> programs;
+
+    explicit Replay(prob_water::Kernels &&kernels) : programs(std::move(kernels.programs)) {
+        for (float x : kernels.coefficients)
+            coefficients.push_back(drjit::opaque<Float>(x));
+        for (const auto &table : kernels.tables)
+            tables.push_back(drjit::load<Buffer>(table.numbers.data(), table.numbers.size()));
+    }
+
+    DRJIT_STRUCT(Replay, coefficients, tables)
+
+    /// The results of a program of some parts.
+    std::vector<Float> run(Program program, Parts parts, const Inputs &inputs) const {
+        return run(programs[(parts.bits() - 1) * PerParts + program], inputs);
+    }
+
+    /// rho of the cosine among the inputs.
+    Float reflectance(const Float &cosine) const {
+        Inputs inputs;
+        inputs.cosine = cosine;
+        return run(programs[3 * PerParts], inputs)[0];
+    }
+
+private:
+    static Float input(const Inputs &in, uint32_t k) {
+        if (k < 12) {
+            const Vector3f *vectors[] = { &in.source, &in.observer, &in.random, &in.normal };
+            return (*vectors[k / 3])[k % 3];
+        }
+        return k == 12 ? in.footprint : k == 13 ? in.whitecap : in.cosine;
+    }
+
+    /// 2^n of an integer from -127, which gives 0, to 127.
+    static Float power_of_2(const Float &n) {
+        return drjit::reinterpret_array<Float>(Int(drjit::fmadd(n, 0x1p23f, 127.f * 0x1p23f)));
+    }
+
+    std::vector<Float> run(const prob_water::Program &program, const Inputs &inputs) const {
+        namespace dr = drjit;
+        using Op = prob_water::Operation;
+        size_t count = program.instructions.size() / 4;
+        std::vector<Float> x(count);
+        std::vector<Mask> m(count);
+        std::vector<Packet> packets(count);
+        for (size_t k = 0; k < count; ++k) {
+            const uint32_t *word = &program.instructions[4 * k];
+            uint32_t a = word[1], b = word[2], c = word[3];
+            switch ((Op) word[0]) {
+                case Op::Constant: x[k] = dr::reinterpret_array<float>(a); break;
+                case Op::Coefficient: x[k] = coefficients[a]; break;
+                case Op::Input: x[k] = input(inputs, a); break;
+                case Op::Add: x[k] = x[a] + x[b]; break;
+                case Op::Subtract: x[k] = x[a] - x[b]; break;
+                case Op::Multiply: x[k] = x[a] * x[b]; break;
+                case Op::Divide: x[k] = x[a] / x[b]; break;
+                case Op::Negate: x[k] = -x[a]; break;
+                case Op::Absolute: x[k] = dr::abs(x[a]); break;
+                case Op::SquareRoot: x[k] = dr::sqrt(x[a]); break;
+                case Op::Reciprocal: x[k] = dr::rcp(x[a]); break;
+                case Op::ReciprocalRoot: x[k] = dr::rsqrt(x[a]); break;
+                case Op::MultiplyAdd: x[k] = dr::fmadd(x[a], x[b], x[c]); break;
+                case Op::Residual: x[k] = dr::fnmadd(x[a], x[b], x[c]); break;
+                case Op::Less: m[k] = x[a] < x[b]; break;
+                case Op::And: m[k] = m[a] & m[b]; break;
+                case Op::Or: m[k] = m[a] | m[b]; break;
+                case Op::Not: m[k] = !m[a]; break;
+                case Op::Select: x[k] = dr::select(m[a], x[b], x[c]); break;
+                case Op::Round: x[k] = dr::round(x[a]); break;
+                case Op::Floor: x[k] = Float(UInt32(x[a])); break;
+                case Op::ScaleByPowerOf2: x[k] = x[a] * power_of_2(x[b]); break;
+                case Op::Exponent:
+                    x[k] = Float((dr::reinterpret_array<Int>(dr::detach(x[a])) - 0x3f3504f3) >> 23);
+                    break;
+                case Op::FlipSign: x[k] = dr::mulsign(x[a], x[b]); break;
+                case Op::Detach: x[k] = dr::detach(x[a]); break;
+                case Op::Lookup: packets[k] = dr::gather<Packet>(tables[a], UInt32(x[b]), m[c]); break;
+                case Op::Element: x[k] = packets[a][b]; break;
+                default: break;
+            }
+        }
+        std::vector<Float> results;
+        for (uint32_t output : program.outputs)
+            results.push_back(x[output]);
+        return results;
+    }
+};
+
+} // namespace prob_water
