@@ -16,7 +16,8 @@
 //! assert!((f - 0.1382).abs() < 1e-4, "{f}");
 //! ```
 //!
-//! One room, a folder, for each part of the work. A room uses only those above it in this list:
+//! One room, a folder, for each part of the work. A room uses only those above it in this list, checked by
+//! `cargo xtask tidy`:
 //!
 //! | room | holds | equations |
 //! | --- | --- | --- |

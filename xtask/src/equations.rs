@@ -81,7 +81,8 @@ pub fn equations(check: bool) -> Result<()> {
     Ok(())
 }
 
-fn collect(directory: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+/// The Rust files of the directory and all within it.
+pub fn collect(directory: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
     for entry in fs::read_dir(directory).with_context(|| format!("cannot read {}", util::shown(directory)))? {
         let path = entry?.path();
         if path.is_dir() {

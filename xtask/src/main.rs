@@ -16,6 +16,7 @@ mod sanitize;
 mod setup;
 mod stress;
 mod test;
+mod tidy;
 mod util;
 
 use anyhow::{Result, bail};
@@ -46,6 +47,8 @@ The commands of prob-water, each run as `cargo xtask <command>`:
                     rust-core, or only check that they are current
   equations [--check]
                     write the index of the report's equations in ARCHITECTURE.md from rust-core's comments, or only check it
+  tidy              check rust-core's source: rooms use only those above them, no circles, no public item without a comment;
+                    and that no file of the repository is long without a reason
   c-test            compile and run the C programs of rust-core/tests/c
   bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench.py)
   bench fronts      only run time against error, the time to 1 % of rendering included
@@ -97,6 +100,7 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["parameters", "--check"] => parameters::parameters(true)?,
         ["equations"] => equations::equations(false)?,
         ["equations", "--check"] => equations::equations(true)?,
+        ["tidy"] => tidy::tidy()?,
         ["c-test"] => c_api::c_test()?,
         _ => bail!("`{}` is not understood; `cargo xtask help` lists the commands", words.join(" ")),
     }

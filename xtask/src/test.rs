@@ -3,7 +3,7 @@
 //! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
 
 use crate::{
-    build, c_api, compat, equations, errors, figures, fuzz, parameters, sanitize, setup, stress, util,
+    build, c_api, compat, equations, errors, figures, fuzz, parameters, sanitize, setup, stress, tidy, util,
 };
 use anyhow::{Result, bail};
 use std::time::{Duration, Instant};
@@ -19,8 +19,9 @@ enum Outcome {
 }
 use Outcome::{Passed, Skipped};
 
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 12] = [
     Step { name: "cargo test", run: cargo_test },
+    Step { name: "tidy", run: || tidy::tidy().map(|()| Passed) },
     Step { name: "header check", run: || c_api::header(true).map(|()| Passed) },
     Step { name: "parameters", run: || parameters::parameters(true).map(|()| Passed) },
     Step { name: "equations", run: || equations::equations(true).map(|()| Passed) },

@@ -172,8 +172,9 @@ pub(crate) struct Geometry<T: Real, E> {
     pub cos: [T; 2],
     /// cos zeta (Eq. 61).
     pub cos_zeta: T::Density,
-    /// tan^2 xi and 1/cos^2 xi (Eq. 71).
+    /// tan^2 xi (Eq. 71).
     pub tan2: T::Density,
+    /// 1/cos^2 xi.
     pub inv_cos2: T::Density,
     /// Sine-like and cosine-like parts of the signed tilts xi_u and xi_c from normal to half vector (Eqs. 69-71).
     tilt: [[E; 2]; 2],

@@ -1,5 +1,6 @@
 //! What a user may choose, under which names, and the sea that follows from it.
 
+mod configure;
 pub(crate) mod parameters;
 pub mod vocabulary;
 

@@ -1,9 +1,6 @@
-//! What a user may choose, checked once and turned into the coefficients of a sea.
+//! What a user may choose, and the sea configured from it.
 
-use super::vocabulary::check;
-use crate::brdf::lobe::steep_gain;
-use crate::brdf::slopes::GramCharlier;
-use crate::brdf::{Facets, Fresnel, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing, slopes};
+use crate::brdf::{Fresnel, Lobe, SlopeMeasure, WindAxes};
 use crate::error::{Error, Warning};
 use crate::sea::{Body, Wind, WindProfile, whitecap};
 
@@ -14,7 +11,7 @@ pub enum Readings {
     #[default]
     Corrected,
     /// pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand, and neither of the bounds
-    /// by which the corrected readings conserve energy ([`Facets::masked_area`], steep facets).
+    /// by which the corrected readings conserve energy (`Facets::masked_area`, steep facets).
     AsPrinted,
 }
 
@@ -245,81 +242,5 @@ impl Parameters {
     /// The report's D in m: as given, or the surface's [default](Surface::default_footprint).
     pub fn footprint(&self) -> f64 {
         self.footprint.unwrap_or_else(|| self.surface.default_footprint())
-    }
-
-    /// Checks everything and computes what depends on the parameters alone.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the parameter, its value and what is allowed.
-    pub fn configure(&self) -> Result<Water, Error> {
-        let wind = self.wind.profile()?;
-        let footprint = self.footprint();
-        check("wind_direction", self.wind_direction, self.wind_direction)?;
-        check("footprint", footprint, footprint)?;
-        check("components", f64::from(self.components), self.components)?;
-        check("instances", self.instances as f64, self.instances)?;
-        check("seed", self.seed as f64, self.seed)?;
-        check("time", self.time, self.time)?;
-        check("depth", self.depth, self.depth)?;
-        check("fetch", self.fetch, self.fetch)?;
-        check("wavelength", self.wavelength, self.wavelength)?;
-        if let Some(ior) = self.ior {
-            check("ior", ior, ior)?;
-        }
-        let ior = self.ior.unwrap_or_else(|| {
-            let salt = if self.water == Body::Ocean { fresnel::SEA_SALT } else { 0.0 };
-            fresnel::pure_water(self.wavelength) + salt
-        });
-        let variances = slopes::variances(&wind, footprint);
-        let whitecap_fraction = whitecap::fraction(wind.w10);
-        Ok(Water {
-            parameters: *self,
-            footprint,
-            wind,
-            ior,
-            variances,
-            whitecap_fraction,
-            lobe: Lobe {
-                facets: self.facets(&wind, ior, variances),
-                whitecap_fraction: 0.0,
-                smooth_fraction: 1.0,
-                whitecap_brdf: whitecap::brdf(self.wavelength),
-            }
-            .with_whitecaps(if self.whitecaps { whitecap_fraction } else { 0.0 }),
-        })
-    }
-
-    /// The facets of a wind, an index and slope variances.
-    pub(crate) fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
-        let [sigma_u, sigma_c] = variances.map(f64::sqrt);
-        let as_printed = self.readings == Readings::AsPrinted;
-        let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
-        let slope_measure = self.slope_measure == SlopeMeasure::Slope;
-        let mut facets = Facets {
-            sigma_u,
-            sigma_c,
-            inv_width_u: 1.0,
-            inv_width_c: 1.0,
-            scale: 1.0,
-            steep_gain: steep_gain(sigma_u.max(sigma_c)),
-            // In tilt angles facets show up to (8 sigma_i^2 + 3 sigma_j^2)/3 more area than their slopes' Lambda.
-            // A percent is left to quadratures and rounding, so that "at most 1" can be checked.
-            bound: 0.99 / if slope_measure { 1.0 } else { 1.0 + 3.0 * (variances[0] + variances[1]) },
-            proposal: [sigma_u, sigma_c],
-            bounded: false,
-            wind: WindAxes::new(self.wind_direction),
-            correction: GramCharlier::new(slopes::skewness(wind), as_printed),
-            sigma_shadow: shadowing::sigma(wind.w10),
-            reflectance: Reflectance::new(ior, self.fresnel),
-            slope_measure,
-            gram_charlier: self.gram_charlier,
-            shadowing: self.shadowing,
-            as_printed,
-        };
-        facets.set_sigmas([sigma_u, sigma_c], eq_56 / std::f64::consts::TAU);
-        let stretch = facets.proposal_stretch();
-        facets.proposal = facets.proposal.map(|sigma| sigma * stretch);
-        facets.bounded = self.shadowing && !as_printed && facets.needs_bound();
-        facets
     }
 }

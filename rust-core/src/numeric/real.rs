@@ -3,6 +3,7 @@
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 pub(crate) mod sealed {
+    /// Keeps [`super::Real`] to this crate's number types.
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
@@ -296,6 +297,7 @@ pub const IERFC: [f32; 10] = [
 pub const IERFC_END: f32 = 3.2;
 
 mod ierfc {
+    /// By the library's erfc.
     pub fn f64(x: f64) -> f64 {
         // Most directions are this steep: 1e-30 of what it is added to.
         if x > 8.0 {
@@ -304,6 +306,7 @@ mod ierfc {
         (-x * x).exp() * std::f64::consts::FRAC_2_SQRT_PI / 2.0 - x * libm::erfc(x)
     }
 
+    /// By the polynomial that lanes use too.
     pub fn f32(x: f32) -> f32 {
         super::single_ierfc(x)
     }

@@ -188,6 +188,8 @@ impl Ensemble {
 /// What one thread needs again and again.
 #[derive(Default)]
 pub(crate) struct Worker {
+    /// The surface drawn last.
     pub surface: Surface,
+    /// Of the ray that is followed over it.
     pub path: Path,
 }

@@ -23,8 +23,9 @@ pub(crate) fn end(sigma: f64) -> f64 {
 pub(crate) struct Cell {
     /// D: their density with the 1/4 of Eq. 56, all waves together, where there is no whitecap.
     pub density: f64,
-    /// Of the slopes of the waves that carry them.
+    /// Mean slope of the waves that carry them.
     pub mean: DVec2,
+    /// Variance of those slopes.
     pub variance: DVec2,
 }
 

@@ -49,10 +49,12 @@ impl WindFrame {
         Self(DVec2::from_angle(azimuth))
     }
 
+    /// The components of a vector in x and y.
     pub fn to_wind(self, v: DVec2) -> DVec2 {
         DVec2::new(v.dot(self.0), v.dot(self.0.perp()))
     }
 
+    /// Back from [`WindFrame::to_wind`].
     pub fn to_world(self, v: DVec2) -> DVec2 {
         v.x * self.0 + v.y * self.0.perp()
     }
@@ -206,10 +208,13 @@ impl Slopes {
     }
 }
 
-/// A point of the plane of slopes: the slope upwind and crosswind, and p and W over the density of points.
+/// A point of the plane of slopes.
 pub(crate) struct Point {
+    /// Upwind and crosswind.
     pub slope: DVec2,
+    /// p over the density of points.
     pub density: f64,
+    /// W over the density of points.
     pub capped: f64,
 }
 

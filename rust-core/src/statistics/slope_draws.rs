@@ -50,7 +50,9 @@ const FURTHER: u64 = 1 << 63;
 /// What observers see of seas drawn by importance.
 #[derive(Debug)]
 pub(crate) struct SlopeDraws {
+    /// Where the beam meets each sea.
     pub hits: Vec<Hit>,
+    /// What the observers see of each sea.
     pub observations: Vec<Observation>,
     /// Weights, 1 on average; 0 for a sea whose point the beam does not reach.
     pub weights: Vec<f64>,

@@ -48,17 +48,21 @@ pub struct Statistics {
     pub share_error: f64,
 }
 
-/// One draw: f in 1/sr, and its weight (1 where all are equally likely).
+/// One draw.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Draw {
+    /// 1/sr.
     pub f: f64,
+    /// 1 where all are equally likely.
     pub weight: f64,
 }
 
-/// No weight and no f, 1/sr, is larger.
+/// The largest that a [`Draw`] can be.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bounds {
+    /// No weight is larger.
     pub weight: f64,
+    /// No f is larger, 1/sr.
     pub f: f64,
 }
 
