@@ -200,11 +200,11 @@ impl<T: Real, E> Geometry<T, E> {
 }
 
 impl<T: Real> Facets<T> {
-    /// Whether a value of the density asks for more digits than `T` has: for Gram-Charlier's polynomial, and an oblique wind,
-    /// which turns a sum of parts that nearly cancel.
+    /// Whether a value of the density asks for more digits than `T` has: for Gram-Charlier's polynomial, and where parts nearly
+    /// cancel, which an oblique wind turns or a wave's normal leans from.
     #[inline(always)]
-    pub(crate) fn needs_extended(&self) -> bool {
-        self.gram_charlier || self.wind.quadrant.is_none()
+    pub(crate) fn needs_extended(&self, level: bool) -> bool {
+        self.gram_charlier || self.wind.quadrant.is_none() || !level
     }
 
     /// About a wave normal, or a level surface's.
@@ -244,18 +244,22 @@ impl<T: Real> Facets<T> {
         let [nu, nc] = self.wind.components(nx, ny);
         let across = |h: E, n: E| E::sum_of_products(h, nz, z, -n).normalize();
         let [xu, xc] = self.wind.components(across(x, nx), across(y, ny));
+        let along = |h: E, n: E| E::sum_of_products(h, n, z, nz).normalize();
         let frame = self.frame(n);
         let local_i = frame.map(|axis| dot(axis, i));
         let [u, c, along_n] = frame.map(|axis| dot(axis, [i[0] + o[0], i[1] + o[1], i[2] + o[2]]));
         let inv_n = T::max(along_n, T::SMALL).recip();
         let slope = [u * inv_n, c * inv_n];
         let tan2 = T::to_density(slope[0].mul_add(slope[0], slope[1] * slope[1]));
+        let cos = [cosine::<T, E>(i, n), cosine::<T, E>(o, n)];
+        // N.V of the sum of both directions, without cancellation where both are small.
+        let sum_n = Real::max(cos[0].to_density() + cos[1].to_density(), T::Density::SMALL);
         Geometry {
-            cos: [cosine::<T, E>(i, n), cosine::<T, E>(o, n)],
+            cos,
             cos_zeta,
             tan2,
-            inv_cos2: one + tan2,
-            tilt: [[xu, E::sum_of_products(hu, nu, z, nz)], [xc, E::sum_of_products(hc, nc, z, nz)]],
+            inv_cos2: length2 / (sum_n * sum_n),
+            tilt: [[xu, along(hu, nu)], [xc, along(hc, nc)]],
             slope,
             local_i,
             tangential: [tangential_part(i, n), tangential_part(o, n)],
@@ -420,10 +424,11 @@ impl<T: Real> Lobe<T> {
     /// f of some of its parts, each with its share of the surface, 1/sr.
     #[inline(always)]
     pub fn eval_parts(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
-        if self.facets.needs_extended() {
-            self.eval_in::<T::Extended>(i, o, n.into(), parts)
+        let n = n.into();
+        if self.facets.needs_extended(n.is_none()) {
+            self.eval_in::<T::Extended>(i, o, n, parts)
         } else {
-            self.eval_in::<T::Plain>(i, o, n.into(), parts)
+            self.eval_in::<T::Plain>(i, o, n, parts)
         }
     }
 

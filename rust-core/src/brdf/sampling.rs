@@ -89,7 +89,8 @@ impl<T: Real> Facets<T> {
     fn pdf<E>(&self, g: &Geometry<T, E>) -> T {
         let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
         let p = self.proposal(g.local_i);
-        let (tan2, inv_cos2) = (T::from_density(g.tan2), T::from_density(g.inv_cos2));
+        let tan2 = T::from_density(g.tan2);
+        let inv_cos2 = one + tan2;
         // Tilts are slopes, or the angle from the normal with its azimuth; the Jacobian is d tilt^2/d omega_h.
         let (tilt_over_slope, jacobian) = if self.slope_measure {
             (one, inv_cos2 * inv_cos2)

@@ -101,7 +101,7 @@ impl Sea {
         if let Some(mean) = &self.mean {
             return mean.eval(i, o, parts) * x[inputs::COSINE];
         }
-        if last_digits && self.lobe.facets.needs_extended() {
+        if last_digits && self.lobe.facets.needs_extended(self.normal.is_none()) {
             self.eval_in::<<Traced as Real>::Extended>(i, o, parts, x[inputs::COSINE])
         } else {
             self.eval_in::<<Traced as Real>::Plain>(i, o, parts, x[inputs::COSINE])
