@@ -4,7 +4,8 @@
  */
 #pragma once
 
-#include "lobe.h"
+#include "replay.h"
+#include <algorithm>
 #include <drjit/while_loop.h>
 #include <mitsuba/core/fwd.h>
 
@@ -43,7 +44,7 @@ template <typename Float_> struct Drawn {
 
     /// The wave normal over a place in m, and the probability of a whitecap. With a footprint the waves too short for it
     /// are left out.
-    std::pair<Vector3f, Float> at(const Wide &x, const Wide &y, const Float *footprint) const {
+    std::pair<Vector3f, Float> at(const Wide &x, const Wide &y, const Float *footprint, const Replay<Float> &replay) const {
         namespace dr = drjit;
         Float reach = footprint ? dr::log2(*footprint) : Float(0.f);
         auto [j, slope_x, slope_y, acceleration] = dr::while_loop(
@@ -52,7 +53,7 @@ template <typename Float_> struct Drawn {
             [&](UInt32 &j, Float &slope_x, Float &slope_y, Float &acceleration) {
                 Wave w = dr::gather<Wave>(waves, j);
                 Wide turns = dr::fmadd(w[0], x, dr::fmadd(w[1], y, w[2]));
-                auto [sin, cos] = Lobe<Float>::turn_sincos(Float(turns - dr::floor(turns)));
+                auto [sin, cos] = replay.sincos_turns(Float(turns - dr::floor(turns)));
                 Float a(w[3]);
                 if (footprint)
                     a *= dr::sqrt(dr::clip(.5f - (Float(w[5]) + reach), 0.f, 1.f));

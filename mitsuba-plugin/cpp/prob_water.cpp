@@ -14,7 +14,6 @@
 #include "prob-water-mitsuba/src/lib.rs.h"
 #include "rust/cxx.h"
 
-#include "empirical.h"
 #include "place.h"
 #include "replay.h"
 #include "sea.h"
@@ -37,6 +36,7 @@ struct ProbWaterPlace {
 struct ProbWaterSpot {
     alignas(16) unsigned char bytes[256];
 };
+float prob_water_reflectance(const prob_water::Water *, float cos);
 float prob_water_bsdf_eval(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3], bool to_light);
 float prob_water_bsdf_pdf(const prob_water::Water *, uint32_t parts, const float i[3], const float o[3]);
 void prob_water_bsdf_sample(const prob_water::Water *, uint32_t parts, const float i[3], const float u[3], bool to_light,
@@ -58,9 +58,7 @@ public:
     MI_IMPORT_BASE(BSDF, m_flags, m_components)
     MI_IMPORT_TYPES(Texture)
 
-    using Lobe = prob_water::Lobe<Float>;
     using Replay = prob_water::Replay<Float>;
-    using Tabled = prob_water::Tabled<Float>;
     using Drawn = prob_water::Drawn<Float>;
     using Parts = prob_water::Parts;
     using Wide = typename Drawn::Wide;
@@ -188,7 +186,7 @@ public:
 
     Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
         Float whitecaps = whitecap_share(here(si, active));
-        UnpolarizedSpectrum diffuse = m_lobe.whitecap_brdf * dr::Pi<ScalarFloat> * whitecaps;
+        UnpolarizedSpectrum diffuse = m_whitecap_brdf * dr::Pi<ScalarFloat> * whitecaps;
         if (m_water_leaving)
             diffuse += within_one(m_water_leaving->eval(si, active)) * (1.f - whitecaps);
         return depolarizer<Spectrum>(diffuse) & active;
@@ -242,7 +240,6 @@ private:
     /// The water at a place: for traced variants its lobe and wave normal; for scalar ones the core's, empty where all
     /// places are alike.
     struct TracedPlace {
-        Lobe lobe;
         typename Replay::Inputs inputs;
     };
     struct ScalarPlace {
@@ -360,20 +357,21 @@ private:
         for (auto &[name, value] : m_exposed)
             value = (ScalarFloat) water.number(name);
 
-        prob_water::Coefficients c = water.coefficients();
-        m_lobe = Lobe(c);
+        prob_water::Cover cover = water.cover();
+        m_whitecap_brdf = dr::opaque<Float>(cover.brdf);
+        m_whitecap_fraction = dr::opaque<Float>(cover.fraction);
+        m_facet_albedo_floor = cover.facet_albedo_floor;
         m_own_footprint = (ScalarFloat) water.number("footprint");
-        m_kind = water.kind();
-        m_drawn_waves = m_kind == prob_water::Kind::Instance;
+        m_drawn_waves = water.kind() == prob_water::Kind::Instance;
+        m_from_afar = water.kind() == prob_water::Kind::Ensemble || water.kind() == prob_water::Kind::Empirical;
         m_places = m_drawn_waves || m_whitecap_texture || varies();
         if constexpr (dr::is_jit_v<Float>) {
             m_replay = Replay(water.kernels(m_whitecap_texture.get() != nullptr));
-            m_tabled = Tabled(water.fine_grid(), c);
             m_drawn = Drawn(water.drawn_waves());
             // Copies from here to there keep their memory up to the next kernel, or to this.
             dr::sync_thread();
         }
-        m_whitecaps = m_whitecap_texture || c.whitecaps;
+        m_whitecaps = m_whitecap_texture || cover.whitecaps;
 
         m_components.clear();
         uint32_t where = +BSDFFlags::FrontSide;
@@ -424,20 +422,17 @@ private:
                              dr::fmadd(Wide(v.y()), Wide(si.p.y()), Wide(v.z()) * Wide(si.p.z())));
         };
         if constexpr (dr::is_jit_v<Float>) {
-            at.lobe = m_lobe;
+            at.inputs.whitecap = m_whitecap_fraction;
             Float &d = at.inputs.footprint, &share = at.inputs.whitecap;
             if (varies())
                 d = footprint(si, active);
             if (m_drawn_waves) {
-                auto [n, whitecap] = m_drawn.at(along(si.sh_frame.s), along(si.sh_frame.t), varies() ? &d : nullptr);
+                auto [n, whitecap] = m_drawn.at(along(si.sh_frame.s), along(si.sh_frame.t), varies() ? &d : nullptr, m_replay);
                 at.inputs.normal = n;
-                if (m_whitecaps)
-                    share = whitecap;
+                share = m_whitecaps ? whitecap : Float(0.f);
             }
             if (m_whitecap_texture)
                 share = within_one(m_whitecap_texture->eval_1(si, active));
-            if (m_drawn_waves || m_whitecap_texture)
-                at.lobe.set_whitecaps(share);
         } else if (m_places) {
             constexpr float None = std::numeric_limits<float>::quiet_NaN();
             ProbWaterPlace place{ { 0., 0. }, None, None };
@@ -461,35 +456,35 @@ private:
 
     Float whitecap_share(const Here &at) const {
         if constexpr (dr::is_jit_v<Float>)
-            return at.lobe.whitecap_fraction;
+            return at.inputs.whitecap;
         else
-            return m_places ? prob_water_spot_whitecaps(&at.spot) : m_lobe.whitecap_fraction;
+            return m_places ? prob_water_spot_whitecaps(&at.spot) : m_whitecap_fraction;
     }
 
     /// The result of a program of the core's, for a path between two directions.
     Float run(typename Replay::Program program, Enabled on, const Here &at, const Vector3f &wi, const Vector3f &wo) const {
         typename Replay::Inputs inputs = at.inputs;
-        // The density is of draws from wi, whichever way the light goes.
-        bool turned = program != Replay::Pdf && on.to_light;
-        bool ordered = m_kind == prob_water::Kind::Ensemble;
-        inputs.source = ordered && turned ? wo : wi;
-        inputs.observer = ordered && turned ? wi : wo;
+        // The order matters to means alone; the density is of draws from wi, whichever way the light goes.
+        bool turned = program != Replay::Pdf && on.to_light && m_from_afar;
+        inputs.source = turned ? wo : wi;
+        inputs.observer = turned ? wi : wo;
         inputs.cosine = wo.z();
         return m_replay.run(program, on.parts, inputs)[0];
     }
 
-    /// f cos(theta_o) of facets and whitecaps in traced variants.
-    Float value(typename Replay::Program program, Enabled on, const Here &at, const Vector3f &wi, const Vector3f &wo) const {
-        if (m_tabled.incidences)
-            return m_tabled.eval(at.lobe, on.to_light ? wo : wi, on.to_light ? wi : wo, wo.z(), on.parts);
-        return run(program, on, at, wi, wo);
+    /// rho of the cosine of an angle.
+    Float rho(const Float &cos) const {
+        if constexpr (dr::is_jit_v<Float>)
+            return m_replay.reflectance(cos);
+        else
+            return prob_water_reflectance(&water(), cos);
     }
 
     /// f cos(theta_o) and density of facets and whitecaps, as far as wanted.
     template <bool Value, bool Pdf>
     std::pair<Float, Float> surface(Enabled on, const Here &at, const Vector3f &wi, const Vector3f &wo) const {
         if constexpr (dr::is_jit_v<Float>) {
-            return { Value ? value(Replay::Eval, on, at, wi, wo) : 0.f, Pdf ? run(Replay::Pdf, on, at, wi, wo) : 0.f };
+            return { Value ? run(Replay::Eval, on, at, wi, wo) : 0.f, Pdf ? run(Replay::Pdf, on, at, wi, wo) : 0.f };
         } else {
             const prob_water::Water *sea = &water();
             uint32_t bits = on.parts.bits();
@@ -528,7 +523,7 @@ private:
         if (on.below) {
             below = this->below(on, at, si, active);
             diffuse = sample1 < below.share;
-            Float rest = (sample1 - below.share) * dr::rcp(dr::maximum(1.f - below.share, Lobe::Small));
+            Float rest = (sample1 - below.share) * dr::rcp(dr::maximum(1.f - below.share, 1e-9f));
             sample1 = dr::select(diffuse, 0.f, dr::minimum(rest, dr::OneMinusEpsilon<Float>));
         }
 
@@ -566,7 +561,7 @@ private:
         if constexpr (dr::is_jit_v<Float>) {
             // A weight divides two Gaussians: it needs no digits to spare.
             bs.pdf = run(Replay::Pdf, on, at, si.wi, bs.wo);
-            value = this->value(Replay::Weight, on, at, si.wi, bs.wo);
+            value = run(Replay::Weight, on, at, si.wi, bs.wo);
         }
         active &= bs.pdf > 0.f;
         return finish(bs, spectrum(value / bs.pdf), whitecap, active);
@@ -583,7 +578,7 @@ private:
     /// f cos(theta_o) of the light from below: what level water lets in and out again.
     UnpolarizedSpectrum from_below(const Here &at, const Vector3f &wi, const Vector3f &wo,
                                    const UnpolarizedSpectrum &reflectance) const {
-        auto through = [&](const Float &cos) { return 1.f - m_lobe.reflectance(dr::clip(cos, 0.f, 1.f)); };
+        auto through = [&](const Float &cos) { return 1.f - this->rho(dr::clip(cos, 0.f, 1.f)); };
         Float factor = through(wi.z()) * through(wo.z()) * (1.f - whitecap_share(at)) * cosine_pdf(wi, wo);
         return reflectance * factor;
     }
@@ -597,11 +592,11 @@ private:
         UnpolarizedSpectrum reflectance = within_one(m_water_leaving->eval(si, active));
         if (on.parts.none())
             return { reflectance, 1.f };
-        Float rho = m_lobe.reflectance(dr::clip(si.wi.z(), 0.f, 1.f)), foam = whitecap_share(at),
+        Float rho = this->rho(dr::clip(si.wi.z(), 0.f, 1.f)), foam = whitecap_share(at),
               below = dr::mean(reflectance) * (1.f - rho) * (1.f - foam),
-              rest = (on.parts.facets ? (1.f - foam) * (rho + Lobe::FacetAlbedoFloor) : Float(0.f)) +
-                     (on.parts.whitecaps ? foam * m_lobe.whitecap_brdf * dr::Pi<Float> : Float(0.f));
-        return { reflectance, below / dr::maximum(below + rest, Lobe::Small) };
+              rest = (on.parts.facets ? (1.f - foam) * (rho + m_facet_albedo_floor) : Float(0.f)) +
+                     (on.parts.whitecaps ? foam * m_whitecap_brdf * dr::Pi<Float> : Float(0.f));
+        return { reflectance, below / dr::maximum(below + rest, 1e-9f) };
     }
 
     rust::Box<prob_water::Options> m_options;
@@ -612,13 +607,13 @@ private:
     std::vector<ScalarFloat> m_shares;
     ScalarFloat m_own_footprint = 0.f, m_pixel_angle = 0.f;
     bool m_pixel = false, m_whitecaps = false, m_drawn_waves = false, m_places = false, m_lent = false;
-    prob_water::Kind m_kind = prob_water::Kind::Flat;
-    Lobe m_lobe;
+    bool m_from_afar = false;
+    ScalarFloat m_facet_albedo_floor = 0.f;
+    Float m_whitecap_brdf = 0.f, m_whitecap_fraction = 0.f;
     Replay m_replay;
-    Tabled m_tabled;
     Drawn m_drawn;
 
-    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_lobe, m_replay, m_tabled, m_drawn)
+    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_whitecap_brdf, m_whitecap_fraction, m_replay, m_drawn)
 };
 
 extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn fn) {

@@ -10,6 +10,17 @@
 
 namespace prob_water {
 
+/// The larger and the smaller of two numbers, the second where the first is none: one comparison, where
+/// Dr.Jit's own take several to pass on what is not a number.
+template <typename A, typename B> A larger(const A &a, const B &b) {
+    A c(b);
+    return drjit::select(a > c, a, c);
+}
+template <typename A, typename B> A smaller(const A &a, const B &b) {
+    A c(b);
+    return drjit::select(a < c, a, c);
+}
+
 /// Which of the two lobes take part.
 struct Parts {
     bool facets, whitecaps;
@@ -39,16 +50,30 @@ template <typename Float_> struct Replay {
     /// Numbers are data, so that a change does not compile new kernels; decisions were made while recording.
     std::vector<Float> coefficients;
     std::vector<Buffer> tables;
+    std::vector<HalfBuffer> half_tables;
+    /// Of a table: numbers in a packet, its place among those of its precision, and whether that is half.
+    struct Table {
+        uint32_t width, place;
+        bool half;
+    };
+    std::vector<Table> layout;
     rust::Vec<prob_water::Program> programs;
 
     explicit Replay(prob_water::Kernels &&kernels) : programs(std::move(kernels.programs)) {
         for (float x : kernels.coefficients)
             coefficients.push_back(drjit::opaque<Float>(x));
-        for (const auto &table : kernels.tables)
-            tables.push_back(drjit::load<Buffer>(table.numbers.data(), table.numbers.size()));
+        for (const auto &table : kernels.tables) {
+            layout.push_back({ table.width, uint32_t(table.half ? half_tables.size() : tables.size()), table.half });
+            if (table.half) {
+                std::vector<drjit::half> halves(table.numbers.begin(), table.numbers.end());
+                half_tables.push_back(drjit::load<HalfBuffer>(halves.data(), halves.size()));
+            } else {
+                tables.push_back(drjit::load<Buffer>(table.numbers.data(), table.numbers.size()));
+            }
+        }
     }
 
-    DRJIT_STRUCT(Replay, coefficients, tables)
+    DRJIT_STRUCT(Replay, coefficients, tables, half_tables)
 
     /// The results of a program of some parts.
     std::vector<Float> run(Program program, Parts parts, const Inputs &inputs) const {
@@ -62,6 +87,14 @@ template <typename Float_> struct Replay {
         return run(programs[3 * PerParts], inputs)[0];
     }
 
+    /// Sine and cosine of so many turns, from 0 to 1.
+    std::pair<Float, Float> sincos_turns(const Float &turns) const {
+        Inputs inputs;
+        inputs.cosine = turns;
+        auto both = run(programs[3 * PerParts + 1], inputs);
+        return { both[0], both[1] };
+    }
+
 private:
     static Float input(const Inputs &in, uint32_t k) {
         if (k < 12) {
@@ -69,6 +102,23 @@ private:
             return (*vectors[k / 3])[k % 3];
         }
         return k == 12 ? in.footprint : k == 13 ? in.whitecap : in.cosine;
+    }
+
+    template <size_t N, typename Source> static Packet gather(const Source &table, const UInt32 &at, const Mask &active) {
+        using Number = drjit::value_t<Source>;
+        using Value = drjit::float32_array_t<Float>;
+        drjit::Array<Value, N> found(drjit::gather<drjit::Array<std::conditional_t<std::is_same_v<Number, drjit::half>,
+            drjit::float16_array_t<Float>, Float>, N>>(table, at, active));
+        Packet packet = 0.f;
+        for (size_t k = 0; k < N; ++k)
+            packet[k] = found[k];
+        return packet;
+    }
+
+    Packet lookup(const Table &t, const UInt32 &at, const Mask &active) const {
+        if (t.half)
+            return t.width == 4 ? gather<4>(half_tables[t.place], at, active) : gather<8>(half_tables[t.place], at, active);
+        return t.width == 4 ? gather<4>(tables[t.place], at, active) : gather<8>(tables[t.place], at, active);
     }
 
     /// 2^n of an integer from -127, which gives 0, to 127.
@@ -114,7 +164,7 @@ private:
                     break;
                 case Op::FlipSign: x[k] = dr::mulsign(x[a], x[b]); break;
                 case Op::Detach: x[k] = dr::detach(x[a]); break;
-                case Op::Lookup: packets[k] = dr::gather<Packet>(tables[a], UInt32(x[b]), m[c]); break;
+                case Op::Lookup: packets[k] = lookup(layout[a], UInt32(x[b]), m[c]); break;
                 case Op::Element: x[k] = packets[a][b]; break;
                 default: break;
             }

@@ -3,8 +3,8 @@
 mod evaluate;
 mod surface;
 
-use prob_water::kernels::Places;
-use prob_water::real::{IERFC, IERFC_END};
+use prob_water::kernels::{Mean, Places};
+use prob_water::sampling::FACET_ALBEDO_FLOOR;
 use prob_water::simd::recorded::Instruction;
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
 use prob_water::{
@@ -15,36 +15,14 @@ use std::path::Path;
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
-    /// The coefficients that the traced variants evaluate: those of `prob_water::Lobe<f64>`, and the polynomial of
-    /// the shadowing function.
-    struct Coefficients {
-        cos_wind: f64,
-        sin_wind: f64,
-        sigma_u: f64,
-        sigma_c: f64,
-        scale: f32,
-        c21: f64,
-        c03: f64,
-        steep_gain: f32,
-        sigma_shadow: f32,
-        bound: f32,
-        proposal_u: f32,
-        proposal_c: f32,
-        normal_reflectance: f64,
-        excess: f64,
-        whitecap_fraction: f32,
-        smooth_fraction: f32,
-        whitecap_brdf: f32,
-        exact: bool,
-        slope_measure: bool,
-        gram_charlier: bool,
-        shadowing: bool,
-        bounded: bool,
-        as_printed: bool,
+    /// What the light from below meets: the whitecaps of level water and what draws take of facets beside their reflectance.
+    struct Cover {
         /// Whether whitecaps take part, wherever they are.
         whitecaps: bool,
-        ierfc: [f32; 10],
-        ierfc_end: f32,
+        fraction: f32,
+        /// BRDF of a whitecap, 1/sr.
+        brdf: f32,
+        facet_albedo_floor: f32,
     }
 
     /// Which surface the facets lie on.
@@ -107,22 +85,6 @@ mod ffi {
         programs: Vec<Program>,
     }
 
-    /// What `prob_water::EmpiricalLobe::fine_grid` gives, for `surface = "empirical"`; else no steps.
-    struct FineGrid {
-        steps: [u32; 3],
-        incidence: f64,
-        in_plane: Vec<f32>,
-        widths: Vec<f32>,
-        whitecaps: bool,
-        /// `across = "slopes"`.
-        slopes: bool,
-        carried: [f64; 2],
-        density_steps: u32,
-        sigmas: [f64; 2],
-        density_step: [f64; 2],
-        densities: Vec<f32>,
-    }
-
     /// The waves of `surface = "instance"`: eight numbers each, as place.h reads them.
     struct DrawnWaves {
         drawn: bool,
@@ -150,8 +112,7 @@ mod ffi {
         /// A configured sea.
         type Water;
         fn kind(self: &Water) -> Kind;
-        fn coefficients(self: &Water) -> Coefficients;
-        fn fine_grid(self: &Water) -> FineGrid;
+        fn cover(self: &Water) -> Cover;
         /// `whitecaps`: their probability comes with every place.
         fn kernels(self: &Water, whitecaps: bool) -> Kernels;
         fn drawn_waves(self: &Water) -> DrawnWaves;
@@ -283,45 +244,24 @@ impl Water {
         }
     }
 
-    fn coefficients(&self) -> ffi::Coefficients {
-        let (f, lobe) = (&self.precise.facets, &self.precise);
-        let single = |x: f64| x as f32;
-        let [c21, c03] = prob_water::slopes::skewness(&self.water.wind);
-        ffi::Coefficients {
-            cos_wind: f.wind.cos,
-            sin_wind: f.wind.sin,
-            sigma_u: f.sigma_u,
-            sigma_c: f.sigma_c,
-            scale: single(f.scale),
-            c21,
-            c03,
-            steep_gain: single(f.steep_gain),
-            sigma_shadow: single(f.sigma_shadow),
-            bound: single(f.bound),
-            proposal_u: single(f.proposal[0]),
-            proposal_c: single(f.proposal[1]),
-            normal_reflectance: f.reflectance.normal,
-            excess: f.reflectance.excess,
-            whitecap_fraction: single(lobe.whitecap_fraction),
-            smooth_fraction: single(lobe.smooth_fraction),
-            whitecap_brdf: single(lobe.whitecap_brdf),
-            exact: f.reflectance.exact,
-            slope_measure: f.slope_measure,
-            gram_charlier: f.gram_charlier,
-            shadowing: f.shadowing,
-            bounded: f.bounded,
-            as_printed: f.as_printed,
+    fn cover(&self) -> ffi::Cover {
+        ffi::Cover {
             whitecaps: match &self.waves {
                 Waves::Drawn(sea) => sea.has_whitecaps(),
-                _ => lobe.whitecap_fraction > 0.0,
+                _ => self.precise.whitecap_fraction > 0.0,
             },
-            ierfc: IERFC,
-            ierfc_end: IERFC_END,
+            fraction: self.precise.whitecap_fraction as f32,
+            brdf: self.precise.whitecap_brdf as f32,
+            facet_albedo_floor: FACET_ALBEDO_FLOOR as f32,
         }
     }
 
     fn kernels(&self, whitecaps: bool) -> ffi::Kernels {
-        let mean = if let Waves::Afar(afar) = &self.waves { afar.waves.as_ref() } else { None };
+        let mean = match &self.waves {
+            Waves::Afar(EnsembleLobe { waves: Some(waves), .. }) => Mean::Ensemble(waves),
+            Waves::Tabled(tabled) => Mean::Empirical(tabled.fine_grid()),
+            _ => Mean::Facets,
+        };
         let normal = matches!(self.waves, Waves::Drawn(_));
         let places = Places { normal, whitecap: whitecaps || normal, footprint: self.facets.as_ref() };
         let Kernels { recording, programs } = Kernels::new(&self.precise, mean, places);
@@ -340,38 +280,6 @@ impl Water {
                     outputs: p.outputs.clone(),
                 })
                 .collect(),
-        }
-    }
-
-    fn fine_grid(&self) -> ffi::FineGrid {
-        let Waves::Tabled(tabled) = &self.waves else {
-            return ffi::FineGrid {
-                steps: [0; 3],
-                incidence: 1.0,
-                in_plane: vec![],
-                widths: vec![],
-                whitecaps: false,
-                slopes: false,
-                carried: [0.0; 2],
-                density_steps: 0,
-                sigmas: [1.0; 2],
-                density_step: [1.0; 2],
-                densities: vec![],
-            };
-        };
-        let g = tabled.fine_grid();
-        ffi::FineGrid {
-            steps: g.steps,
-            incidence: g.incidence,
-            in_plane: g.in_plane,
-            widths: g.widths,
-            whitecaps: g.whitecaps,
-            slopes: g.slopes,
-            carried: g.carried,
-            density_steps: g.density_steps,
-            sigmas: g.sigmas,
-            density_step: g.density_step,
-            densities: g.densities,
         }
     }
 

@@ -4,7 +4,9 @@
 //! unless told), all in turn, on one thread.
 
 use prob_water::batch::Rows;
-use prob_water::{Across, EmpiricalLobe, Engagement, Ensemble, Parameters, Scalar, Surface, Table, Wind};
+use prob_water::{
+    Across, EmpiricalLobe, Engagement, Ensemble, Gridded, Parameters, Scalar, Surface, Table, Wind,
+};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;
 use std::num::NonZeroU32;
@@ -104,7 +106,11 @@ fn main() {
 }
 
 /// A checked batch.
-fn batch<T: Scalar + 'static>(lobe: EmpiricalLobe, i: Vec<[T; 3]>, o: Vec<[T; 3]>) -> Box<dyn FnMut()> {
+fn batch<T: Scalar + Gridded + 'static>(
+    lobe: EmpiricalLobe,
+    i: Vec<[T; 3]>,
+    o: Vec<[T; 3]>,
+) -> Box<dyn FnMut()> {
     let mut f = vec![T::of(0.0); i.len()];
     Box::new(move || {
         let rows = Rows::new(&i, &o, None).expect("they are unit vectors");

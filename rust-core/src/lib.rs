@@ -50,14 +50,13 @@ pub mod statistics;
 pub mod surface;
 
 pub use api::batch;
+pub use api::kernels::{self, Kernels};
 pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, fresnel, sampling, shadowing, slopes};
 pub use config::{Across, Average, Parameters, Readings, Surface, Water, vocabulary};
-pub use empirical::{EmpiricalLobe, Estimate, Table, planes, table, table_file};
+pub use empirical::{EmpiricalLobe, Estimate, FineGrid, Gridded, Table, planes, table, table_file};
 pub use error::{Error, Warning};
 pub use numeric::{Real, Scalar, real};
-pub use render::{
-    EnsembleLobe, FacetTable, InstanceLobe, Kernels, Layout, Mesh, ensemble_lobe, grid, kernels, mesh,
-};
+pub use render::{EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, ensemble_lobe, grid, mesh};
 pub use sea::{Body, Wind, WindProfile, spectrum, whitecap, wind};
 pub use statistics::{Aim, Engagement, Ensemble, Exact, Presence, Proposal, Statistics, ensemble};
 pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

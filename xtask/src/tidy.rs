@@ -13,13 +13,11 @@ const SOURCE: &str = "rust-core/src";
 const LONGEST: usize = 500;
 
 /// Files of more than [`LONGEST`] lines, and why each is one file.
-const LONG: [(&str, &str); 8] = [
-    ("mitsuba-plugin/cpp/lobe.h", "one struct template, compared with the core's lobe as a whole"),
+const LONG: [(&str, &str); 6] = [
     ("mitsuba-plugin/cpp/prob_water.cpp", "one class template, the plugin as Mitsuba asks for it"),
     ("rust-core/src/api/c_api.rs", "the C interface: its header is written from this one file"),
     ("rust-core/src/brdf/lobe.rs", "the closed form in one piece: facets, whitecaps and their mixture"),
     ("rust-core/src/config/vocabulary.rs", "the one list of parameters, and tests of every row beside it"),
-    ("rust-core/src/empirical/lobe.rs", "one lobe: its fine grid, how it is read, and its statistics"),
     ("rust-core/src/empirical/table.rs", "making and reading a table share the order of its axes"),
     ("rust-core/tests/empirical.rs", "tests of one model, which share their seas and what they compare with"),
 ];

@@ -1,6 +1,7 @@
 //! Checked evaluation of many rows: every direction is looked at before the first is evaluated.
 
 use crate::brdf::Lobe;
+use crate::empirical::Gridded;
 use crate::error::Error;
 use crate::numeric::{Scalar, Vec3};
 use crate::simd::{Kernel, Lanes, Level, Vector};
@@ -85,7 +86,7 @@ pub enum Quantity {
 }
 
 /// How rows of a number type are evaluated: one by one, or in lanes.
-pub trait Batched: Scalar {
+pub trait Batched: Scalar + Gridded {
     /// Writes a value of every row.
     fn values(rows: &Rows<Self>, lobe: &Lobe<Self>, value: Quantity, out: &mut [Self]) -> Result<(), Error>;
 }

@@ -3,3 +3,4 @@
 pub mod batch;
 #[cfg(feature = "c-api")]
 mod c_api;
+pub mod kernels;

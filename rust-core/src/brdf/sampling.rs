@@ -236,7 +236,13 @@ impl<T: Real> Lobe<T> {
 
     /// The same in the digits of `E`.
     #[inline(always)]
-    fn pdf_in<E: Extended<T>>(&self, i: Vec3<T>, o: Vec3<T>, n: Option<Vec3<T>>, parts: Parts) -> T {
+    pub(crate) fn pdf_in<E: Extended<T>>(
+        &self,
+        i: Vec3<T>,
+        o: Vec3<T>,
+        n: Option<Vec3<T>>,
+        parts: Parts,
+    ) -> T {
         let g = self.facets.geometry::<E>(i, o, n);
         let diffuse = || g.cos[1] * T::of(FRAC_1_PI);
         g.above_horizon(match parts {

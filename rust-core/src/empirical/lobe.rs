@@ -23,37 +23,28 @@
 //! let estimate = lobe.estimate(i, o);
 //! println!("{} +- {} 1/sr", estimate.mean, estimate.std);
 //! assert!(!estimate.outside);
-//! let f: f32 = lobe.eval(i.map(|x| x as f32), o.map(|x| x as f32));
-//! assert!((f64::from(f) / estimate.mean - 1.0).abs() < 1e-4);
+//! assert!((lobe.eval(i, o) / estimate.mean - 1.0).abs() < 1e-4);
 //! # Ok(())
 //! # }
 //! ```
 
+use super::fine_grid::{AZIMUTHS, DENSITIES, FineGrid, INCIDENCES, Place, SHARES, THETAS};
 use super::reference::Moments;
 use super::table::Table;
 use crate::brdf::lobe::defined;
-use crate::brdf::shadowing::hidden;
 use crate::brdf::{Lobe, Parts};
 use crate::config::{Across, Surface, Water};
 use crate::error::Error;
-use crate::numeric::{Real, Scalar, Vec3};
-use crate::statistics::level_water::{LEANING, NOTHING, Spreads, ln_densities};
+use crate::numeric::Vec3;
+use crate::numeric::packets::{Packets, Tabulated};
+use crate::statistics::level_water::{Spreads, ln_densities};
 use crate::statistics::{Engagement, Exact, Statistics};
 use crate::surface::{Draws, Numbers};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::num::NonZeroU32;
 
-/// Steps of the fine grid: over theta_i, the wind's azimuth and theta_r.
-const INCIDENCES: usize = 32;
-const AZIMUTHS: usize = 16;
-const THETAS: usize = 80;
-/// Shares of whitecaps come to half precision in this part of 1, so that rare ones keep their digits.
-const SHARES: f64 = 1024.0;
-/// Nodes on a side of the density of facets.
-const DENSITIES: usize = 257;
-/// The area shown to both directions is at least this; and the cosine that stands for the horizon.
-const GRAZING: f64 = 1e-6;
+/// The cosine that stands for the horizon.
 const LOWEST: f64 = 2e-3;
 
 /// Relative error of a mean by the table, in its grid and in the plane of incidence or with [`Across::Slopes`].
@@ -91,38 +82,27 @@ pub struct EmpiricalLobe {
     in_plane: Vec<[f32; 3]>,
     /// By theta_i and azimuth: sigma, u_sigma, delta, u_delta, radians.
     widths: Vec<[f32; 4]>,
-    /// What [`ln_densities`] gives.
-    densities: Vec<f32>,
-    steps: [f64; 2],
+    /// The same laid out for evaluation.
+    grid: FineGrid<f64>,
+    single: FineGrid<f32>,
 }
 
-/// The fine grid as traced code reads it.
-#[derive(Debug, Clone)]
-pub struct FineGrid {
-    /// Steps over tan(theta_i/2) from 0, over the stand-in of the azimuth from 0 to 2, and over tan(theta_r/2) from -1 to 1.
-    pub steps: [u32; 3],
-    /// The largest tan(theta_i/2).
-    pub incidence: f64,
-    /// By theta_i, by intervals of the azimuth and by those of theta_r, what the four corners hold, azimuths first:
-    /// logarithms of the ratio to level water, and with `whitecaps` 1024 times their shares.
-    pub in_plane: Vec<f32>,
-    /// By intervals of theta_i and of the azimuth, of the four corners, azimuths first: sigma, then delta.
-    pub widths: Vec<f32>,
-    /// There are whitecaps.
-    pub whitecaps: bool,
-    /// `across = "slopes"`.
-    pub slopes: bool,
-    /// Of a half vector's slope, upwind and crosswind, the share of the waves that carry its facets.
-    pub carried: [f64; 2],
-    /// The density of facets along a half vector, over its tilt angles upwind and crosswind, 0 in the middle: steps on a
-    /// side, the standard deviations of both angles in radians, and the steps in those.
-    pub density_steps: u32,
-    /// Radians.
-    pub sigmas: [f64; 2],
-    /// Standard deviations.
-    pub density_step: [f64; 2],
-    /// By cells, of the four corners, crosswind first, the logarithm of the ratio to Gauss's function of the angles.
-    pub densities: Vec<f32>,
+/// A number type in which the grid is at hand.
+pub trait Gridded: Tabulated {
+    /// It.
+    fn grid(lobe: &EmpiricalLobe) -> &FineGrid<Self>;
+}
+
+impl Gridded for f64 {
+    fn grid(lobe: &EmpiricalLobe) -> &FineGrid<Self> {
+        &lobe.grid
+    }
+}
+
+impl Gridded for f32 {
+    fn grid(lobe: &EmpiricalLobe) -> &FineGrid<Self> {
+        &lobe.single
+    }
 }
 
 /// What a drawn surface shows.
@@ -132,24 +112,6 @@ enum Part {
     Facets,
     /// A wave turned away, or one that hides it.
     Nothing,
-}
-
-/// Where a pair of directions lies in the fine grid.
-struct Place<T> {
-    /// Of the four rows about it, the first number of each and its weight.
-    rows: [(usize, T); 4],
-    /// In a row: the number of the first of two values, and how far towards the second.
-    theta: (usize, T),
-    /// Tangents of theta_i/2, not beyond the table, and theta_r/2.
-    halves: [T; 2],
-    /// Cosine and sine of the wind's azimuth from the plane.
-    wind: [T; 2],
-    /// Horizontal, in the plane, away from the source.
-    forward: [T; 2],
-    /// phi_r of Eq. 88 with the table's sign; sigma's factor of Eq. 89.
-    phi: T,
-    narrowing: T,
-    outside: bool,
 }
 
 impl EmpiricalLobe {
@@ -162,7 +124,7 @@ impl EmpiricalLobe {
         let slice = table.slice(water)?;
         let spreads = Spreads::new(water);
         let (densities, steps) = ln_densities(&Exact::new(water)?, &spreads, DENSITIES);
-        let densities = densities.into_iter().map(half).collect();
+        let densities: Vec<f32> = densities.into_iter().map(half).collect();
         let [incidences, thetas] = slice.ends().map(|ends| ends.map(|angle| (0.5 * angle).tan()));
         // A table for the vertical alone has a grid all the same.
         let incidences = [incidences[0], incidences[1].max(1e-3)];
@@ -194,106 +156,25 @@ impl EmpiricalLobe {
         let mut sampler = spreads.sampler(water);
         // As many whitecaps as a source overhead meets.
         sampler = sampler.with_whitecaps(f64::from(in_plane[THETAS / 2][1]));
-        Ok(Self {
-            sampler,
-            across: water.parameters.across,
-            spreads,
-            incidences,
-            thetas,
-            in_plane,
-            widths,
-            densities,
-            steps,
-        })
+        let across = water.parameters.across;
+        let grid = fine_grid(sampler, across, &spreads, incidences[1], &in_plane, &widths, &densities, steps);
+        Ok(Self { sampler, across, spreads, incidences, thetas, in_plane, widths, single: grid.cast(), grid })
+    }
+
+    /// What is evaluated; in any other number type by its `cast`.
+    pub fn fine_grid(&self) -> &FineGrid<f64> {
+        &self.grid
     }
 
     /// f, 1/sr (Eq. 90), for unit vectors to source and observer; 0 at or below the horizon, not a number where a coordinate
     /// is none.
-    pub fn eval<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
+    pub fn eval<T: Gridded>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
         self.eval_parts(i, o, Parts::ALL)
     }
 
     /// f of some of its parts, 1/sr.
-    #[inline]
-    pub fn eval_parts<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
-        let zero = T::of(0.0);
-        if !(zero.below(i[2]) && zero.below(o[2])) {
-            return defined(i, o, [i[2], o[2]], zero);
-        }
-        let place = self.place(i, o);
-        let [ratio, whitecaps] = place.in_plane(&self.in_plane, |cell| [cell[0], cell[1]]);
-        let mut f = zero;
-        if parts.facets {
-            let (density, visible) = self.level(i, o, &place);
-            let mut exponent = ratio + density;
-            if self.across == Across::Report {
-                let [sigma, delta] = place.around(&self.widths, |cell| [cell[0], cell[2]]);
-                let x = (place.phi - delta) / (sigma * place.narrowing);
-                exponent = exponent - x * x;
-            }
-            f = self.reflectance(i, o) * visible * exponent.exp();
-        }
-        if parts.whitecaps {
-            f = f + T::of(self.sampler.whitecap_brdf) * whitecaps;
-        }
-        defined(i, o, [i[2], o[2]], f)
-    }
-
-    /// What the facets would reflect on level water, over rho, as the logarithm of their density and the rest: towards the
-    /// observer with [`Across::Slopes`], else towards what is in the plane of it.
-    fn level<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>, place: &Place<T>) -> (T, T) {
-        let one = T::of(1.0);
-        let facets = &self.sampler.facets;
-        let (slope, cos, sin) = match self.across {
-            Across::Slopes => {
-                let [x, y, z] = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
-                let [c, s] = [facets.wind.cos, facets.wind.sin].map(T::of);
-                let lean = -one / T::max(z, T::of(1e-12));
-                let slope = [lean * (x * c + y * s), lean * (y * c - x * s)];
-                // The waves that carry these facets lean with them, and show the observer more than level water does.
-                let carried = self.spreads.carried();
-                let [u, v] = [0, 1].map(|k| slope[k] * T::of(carried[k]));
-                let across = u * (o[0] * c + o[1] * s) + v * (o[1] * c - o[0] * s);
-                let cos = T::max((o[2] - across) / (one + u * u + v * v).sqrt(), T::of(LEANING));
-                let sine = |z: T| T::max(one - z * z, T::of(0.0)).sqrt();
-                (slope, [i[2], cos], [sine(i[2]), sine(cos)])
-            }
-            Across::Report => {
-                // By half angles: the half vector leans by half the difference of theta_r and theta_i.
-                let [a, b] = place.halves;
-                let lean = (a - b) / (one + a * b);
-                let over = place.halves.map(|t| one / (one + t * t));
-                let cos =
-                    [0, 1].map(|k| T::max((one - place.halves[k] * place.halves[k]) * over[k], T::of(0.0)));
-                let sin = [0, 1].map(|k| T::of(2.0) * place.halves[k].abs() * over[k]);
-                ([lean * place.wind[0], -lean * place.wind[1]], cos, sin)
-            }
-        };
-        let mut area = cos[0] * cos[1];
-        if facets.shadowing {
-            let sigma = T::of(facets.sigma_shadow);
-            area = area + cos[1] * hidden(cos[0], sigma * sin[0]) + cos[0] * hidden(cos[1], sigma * sin[1]);
-        }
-        (self.ln_density(slope), one / T::max(area, T::of(GRAZING)))
-    }
-
-    /// The logarithm of the facets' density along a half vector of a slope upwind and crosswind.
-    fn ln_density<T: Scalar>(&self, slope: [T; 2]) -> T {
-        let middle = 0.5 * (DENSITIES - 1) as f64;
-        let sigmas = self.spreads.sigmas();
-        let tilt = [0, 1].map(|k| Real::atan2(slope[k], T::of(1.0)) * T::of(1.0 / sigmas[k]));
-        let [u, c] = [0, 1].map(|k| tilt[k] * T::of(1.0 / self.steps[k]) + T::of(middle));
-        let end = T::of(2.0 * middle);
-        let inside = T::of(0.0).below(u) && u.below(end) && T::of(0.0).below(c) && c.below(end);
-        if !inside {
-            return T::of(NOTHING);
-        }
-        let ((j, s), (k, t)) = (split(u, DENSITIES - 1), split(c, DENSITIES - 1));
-        let node = |n: usize| T::of(f64::from(self.densities[n]));
-        let at = |n: usize| node(n) + t * (node(n + 1) - node(n));
-        let (near, far) = (at(j * DENSITIES + k), at((j + 1) * DENSITIES + k));
-        let gauss = T::of(0.5) * (tilt[0] * tilt[0] + tilt[1] * tilt[1]);
-        near + s * (far - near) - gauss
+    pub fn eval_parts<T: Gridded>(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
+        T::grid(self).eval(i, o, parts)
     }
 
     /// f with its standard uncertainty (Eqs. 90-91), for unit vectors to source and observer.
@@ -302,12 +183,12 @@ impl EmpiricalLobe {
             let f = defined(i, o, [i[2], o[2]], 0.0);
             return Estimate { mean: f, std: f, outside: false };
         }
-        let place = self.place(i, o);
+        let place = self.grid.place(i, o);
         let (moments, rho) = self.moments(i, o, &place);
         let [mean, std] = match self.across {
             Across::Slopes => moments.brdf(rho, self.sampler.whitecap_brdf),
             Across::Report => {
-                let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths, |cell| *cell);
+                let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths);
                 let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
                 let x = (place.phi - delta) / sigma;
                 let fall = (-x * x).exp();
@@ -320,18 +201,18 @@ impl EmpiricalLobe {
             }
         };
         let [mean, std] = [mean, std].map(|f| defined(i, o, [i[2], o[2]], f));
-        Estimate { mean, std, outside: place.outside }
+        Estimate { mean, std, outside: self.outside(&place) }
     }
 
     /// Where the lobe across the plane peaks, or with [`Across::Slopes`] towards the observer itself; and rho.
     fn moments(&self, i: [f64; 3], o: [f64; 3], place: &Place<f64>) -> (Moments, f64) {
-        let [ratio, whitecaps, square] = place.in_plane(&self.in_plane, |cell| *cell);
-        let (density, visible) = self.level(i, o, place);
+        let [ratio, whitecaps, square] = place.in_plane(&self.in_plane);
+        let (density, visible) = self.grid.level(i, o, place);
         let seen = if self.across == Across::Report { place.view() } else { o };
         let facets = visible * (ratio + density).exp();
         let square = (square + self.spreads.ln_square(i, seen)).clamp(0.0, LARGEST_SQUARE).exp();
         let moments = Moments { facets, facets2: facets * facets * square, whitecaps };
-        (moments, self.reflectance(i, o))
+        (moments, self.grid.reflectance(i, o))
     }
 
     /// f drawn through the table's spreads, as single surfaces would show it: a whitecap, or facets whose lobe across the
@@ -351,13 +232,13 @@ impl EmpiricalLobe {
         if i[2] <= 0.0 || o[2] <= 0.0 {
             return Statistics { whitecap: 0.0, ..Statistics::of_values(values, limits, 0.0) };
         }
-        let place = self.place(i, o);
+        let place = self.grid.place(i, o);
         let (Moments { facets, facets2, whitecaps }, rho) = self.moments(i, o, &place);
         let foam = self.sampler.whitecap_brdf;
         let unseen = self.spreads.unseen(i, o).min(1.0 - whitecaps);
         let open = (1.0 - whitecaps - unseen).max(1e-6);
         let lobe = (self.across == Across::Report).then(|| {
-            let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths, |cell| *cell);
+            let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths);
             let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
             let single = (sigma * sigma - 2.0 * u_delta * u_delta).max(0.04 * sigma * sigma).sqrt();
             ([single, u_sigma], [place.phi - delta, u_delta])
@@ -432,103 +313,57 @@ impl EmpiricalLobe {
         engagement.ways().map(|[i, o]| self.estimate(i, o)).collect()
     }
 
-    /// rho between two directions (Eqs. 61-63).
-    fn reflectance<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
-        let half = T::of(0.5) * (0..3).fold(T::of(0.0), |sum, k| sum + (i[k] + o[k]) * (i[k] + o[k])).sqrt();
-        let facets = &self.sampler.facets.reflectance;
-        T::of(facets.eval(half.to_f64().min(1.0)))
+    /// Whether directions lie outside of the table's grid.
+    fn outside(&self, place: &Place<f64>) -> bool {
+        let beyond = |x: f64, [low, high]: [f64; 2]| !(low - 1e-6..=high + 1e-6).contains(&x);
+        beyond(place.half_i, self.incidences) || beyond(place.halves[1], self.thetas)
     }
+}
 
-    #[inline]
-    fn place<T: Scalar>(&self, i: Vec3<T>, o: Vec3<T>) -> Place<T> {
-        let [zero, one] = [0.0, 1.0].map(T::of);
-        let facets = &self.sampler.facets;
-        let [cos_wind, sin_wind] = [facets.wind.cos, facets.wind.sin].map(T::of);
-        // Away from the source; with the wind where the source is overhead.
-        let flat = (i[0] * i[0] + i[1] * i[1]).sqrt();
-        let overhead = flat.below(T::of(1e-6));
-        let inverse = one / T::max(flat, T::of(1e-6));
-        let [x, y] = if overhead { [cos_wind, sin_wind] } else { [-i[0] * inverse, -i[1] * inverse] };
-        let half_i = flat / (one + i[2]);
-        let last = T::of(self.incidences[1]);
-        let tan_i = T::min(half_i, last);
-        // The wind's azimuth from there, to either side.
-        let cos = cos_wind * x + sin_wind * y;
-        let sin = if overhead { zero } else { sin_wind * x - cos_wind * y };
-        let around = one - cos / (cos.abs() + sin.abs());
-        let [forward, aside] = [o[0] * x + o[1] * y, o[1] * x - o[0] * y];
-        let tan_r = forward / ((forward * forward + o[2] * o[2]).sqrt() + o[2]);
-        let along = T::of(INCIDENCES as f64) * (tan_i / last);
-        let (a, s) = split(along, INCIDENCES);
-        let (b, t) = split(T::of(0.5 * AZIMUTHS as f64) * around, AZIMUTHS);
-        let row = a * (AZIMUTHS + 1) + b;
-        let (near, left) = (one - s, one - t);
-        // Eqs. 87-89 by half angles.
-        let tan2 = tan_i * tan_i;
-        let specular = (T::of(2.0) * tan_i * forward + (one - tan2) * o[2]) / (one + tan2);
-        let phi = Real::atan2(aside, specular.abs());
-        let lower = T::min(tan_i, tan_r);
-        let beyond = |x: T, [low, high]: [f64; 2]| {
-            let slack = 1e-6;
-            !(low - slack..=high + slack).contains(&x.to_f64())
-        };
-        Place {
-            halves: [tan_i, tan_r],
-            wind: [cos, sin],
-            forward: [x, y],
-            rows: [
-                (row, near * left),
-                (row + 1, near * t),
-                (row + AZIMUTHS + 1, s * left),
-                (row + AZIMUTHS + 2, s * t),
-            ],
-            theta: split(T::of(0.5 * THETAS as f64) * (tan_r + one), THETAS),
-            phi: if sin.below(zero) { -phi } else { phi },
-            narrowing: (one - tan_i * lower) / ((one + tan2) * (one + lower * lower)).sqrt(),
-            outside: beyond(half_i, self.incidences) || beyond(tan_r, self.thetas),
-        }
-    }
-
-    /// For traced code.
-    pub fn fine_grid(&self) -> FineGrid {
-        let whitecaps = self.in_plane.iter().any(|cell| cell[1] > 0.0);
-        // What is needed together lies together, so that a look into memory finds it.
-        let ends = (0..(INCIDENCES + 1) * AZIMUTHS).map(|k| {
-            let row = k / AZIMUTHS * (AZIMUTHS + 1) + k % AZIMUTHS;
-            [row, row + 1]
-        });
-        let in_plane = ends.clone().flat_map(|rows| {
-            (0..THETAS).flat_map(move |theta| {
-                let at = |n: usize, unit: f32| {
-                    let cell = |row: usize, t: usize| unit * self.in_plane[row * (THETAS + 1) + t][n];
-                    [theta, theta + 1].map(|t| rows.map(|row| cell(row, t))).concat()
-                };
-                let shares = if whitecaps { at(1, SHARES as f32) } else { vec![] };
-                at(0, 1.0).into_iter().chain(shares)
-            })
-        });
-        let ends = (0..INCIDENCES * AZIMUTHS).map(|k| {
-            let row = k / AZIMUTHS * (AZIMUTHS + 1) + k % AZIMUTHS;
-            [row, row + 1, row + AZIMUTHS + 1, row + AZIMUTHS + 2]
-        });
-        let widths = ends.flat_map(|rows| [0, 2].map(|n| rows.map(|row| self.widths[row][n])).concat());
-        let cells = (0..(DENSITIES - 1) * (DENSITIES - 1))
-            .map(|k| k / (DENSITIES - 1) * DENSITIES + k % (DENSITIES - 1));
-        let densities =
-            cells.flat_map(|n| [n, n + 1, n + DENSITIES, n + DENSITIES + 1].map(|n| self.densities[n]));
-        FineGrid {
-            steps: [INCIDENCES as u32, AZIMUTHS as u32, THETAS as u32],
-            incidence: self.incidences[1],
-            in_plane: in_plane.collect(),
-            widths: widths.collect(),
-            whitecaps,
-            slopes: self.across == Across::Slopes,
-            carried: self.spreads.carried(),
-            density_steps: DENSITIES as u32 - 1,
-            sigmas: self.spreads.sigmas(),
-            density_step: self.steps,
-            densities: densities.collect(),
-        }
+/// The grid from its nodes: what is needed together lies together, so that a look into memory finds it.
+#[allow(clippy::too_many_arguments)]
+fn fine_grid(
+    sampler: Lobe<f64>,
+    across: Across,
+    spreads: &Spreads,
+    last: f64,
+    in_plane: &[[f32; 3]],
+    widths: &[[f32; 4]],
+    densities: &[f32],
+    steps: [f64; 2],
+) -> FineGrid<f64> {
+    let whitecaps = in_plane.iter().any(|cell| cell[1] > 0.0);
+    let left = |k: usize| k / AZIMUTHS * (AZIMUTHS + 1) + k % AZIMUTHS;
+    let corners = (0..(INCIDENCES + 1) * AZIMUTHS).flat_map(|k| {
+        let rows = [left(k), left(k) + 1];
+        (0..THETAS).flat_map(move |theta| {
+            let at = |n: usize, unit: f32| {
+                let cell = |row: usize, t: usize| unit * in_plane[row * (THETAS + 1) + t][n];
+                [theta, theta + 1].map(|t| rows.map(|row| cell(row, t))).concat()
+            };
+            let shares = if whitecaps { at(1, SHARES as f32) } else { vec![] };
+            at(0, 1.0).into_iter().chain(shares)
+        })
+    });
+    let around = (0..INCIDENCES * AZIMUTHS).flat_map(|k| {
+        let rows = [left(k), left(k) + 1, left(k) + AZIMUTHS + 1, left(k) + AZIMUTHS + 2];
+        [0, 2].map(|n| rows.map(|row| widths[row][n])).concat()
+    });
+    let cells = (0..(DENSITIES - 1) * (DENSITIES - 1))
+        .map(|k| k / (DENSITIES - 1) * DENSITIES + k % (DENSITIES - 1))
+        .flat_map(|n| [n, n + 1, n + DENSITIES, n + DENSITIES + 1].map(|n| densities[n]));
+    FineGrid {
+        lobe: sampler,
+        across,
+        whitecaps,
+        last,
+        inv_step: INCIDENCES as f64 / last,
+        carried: spreads.carried(),
+        inv_sigma: spreads.sigmas().map(f64::recip),
+        inv_density_step: steps.map(f64::recip),
+        in_plane: Packets { width: if whitecaps { 8 } else { 4 }, half: true, numbers: corners.collect() },
+        widths: Packets { width: 8, half: true, numbers: around.collect() },
+        densities: Packets { width: 4, half: true, numbers: cells.collect() },
     }
 }
 
@@ -543,12 +378,6 @@ fn normals(a: f64, b: f64) -> [f64; 2] {
 fn half(x: f64) -> f32 {
     let unit = 2f64.powi((x.abs().log2().floor() as i32).max(-14) - 10);
     ((x / unit).round_ties_even() * unit) as f32
-}
-
-/// A place on an axis of so many steps: the step and how far along it.
-fn split<T: Scalar>(x: T, steps: usize) -> (usize, T) {
-    let k = (x.to_f64() as usize).min(steps - 1);
-    (k, T::min(x - T::of(k as f64), T::of(1.0)))
 }
 
 /// The angle from 0 to pi for which this stands, from 0 to 2.
@@ -566,28 +395,35 @@ impl Place<f64> {
     }
 }
 
-impl<T: Scalar> Place<T> {
+impl Place<f64> {
+    /// Of the four rows about it, the number of each and its weight.
+    fn rows(&self) -> [(usize, f64); 4] {
+        let ((a, s), (b, t)) = (self.incidence, self.azimuth);
+        let row = a as usize * (AZIMUTHS + 1) + b as usize;
+        let (near, left) = (1.0 - s, 1.0 - t);
+        [(row, near * left), (row + 1, near * t), (row + AZIMUTHS + 1, s * left), (row + AZIMUTHS + 2, s * t)]
+    }
+
     /// Values between nodes over all three axes.
-    fn in_plane<const N: usize>(&self, cells: &[[f32; 3]], of: impl Fn(&[f32; 3]) -> [f32; N]) -> [T; N] {
+    fn in_plane(&self, cells: &[[f32; 3]]) -> [f64; 3] {
         let (k, t) = self.theta;
-        let mut sums = [T::of(0.0); N];
-        for (row, weight) in self.rows {
-            let at = row * (THETAS + 1) + k;
-            let (low, high) = (of(&cells[at]), of(&cells[at + 1]));
-            for n in 0..N {
-                let [low, high] = [low[n], high[n]].map(|x| T::of(x.into()));
-                sums[n] = sums[n] + weight * (low + t * (high - low));
+        let mut sums = [0.0; 3];
+        for (row, weight) in self.rows() {
+            let at = row * (THETAS + 1) + k as usize;
+            for (n, sum) in sums.iter_mut().enumerate() {
+                let [low, high] = [cells[at][n], cells[at + 1][n]].map(f64::from);
+                *sum += weight * (low + t * (high - low));
             }
         }
         sums
     }
 
     /// Values between nodes over theta_i and the azimuth.
-    fn around<const N: usize>(&self, cells: &[[f32; 4]], of: impl Fn(&[f32; 4]) -> [f32; N]) -> [T; N] {
-        let mut sums = [T::of(0.0); N];
-        for (row, weight) in self.rows {
-            for (sum, x) in sums.iter_mut().zip(of(&cells[row])) {
-                *sum = *sum + weight * T::of(x.into());
+    fn around(&self, cells: &[[f32; 4]]) -> [f64; 4] {
+        let mut sums = [0.0; 4];
+        for (row, weight) in self.rows() {
+            for (sum, x) in sums.iter_mut().zip(cells[row]) {
+                *sum += weight * f64::from(x);
             }
         }
         sums

@@ -70,7 +70,7 @@ pub struct EnsembleLobe {
 #[derive(Debug, Clone)]
 pub struct MeanLobe<T: Real> {
     /// The facets on the waves; of whitecaps their BRDF.
-    lobe: Lobe<T>,
+    pub(crate) lobe: Lobe<T>,
     /// Nodes on a side of the table, the half vector's slope 0 in the middle.
     pub rows: u32,
     /// The inverse of the step between nodes, tilt angles upwind and crosswind.

@@ -4,12 +4,10 @@ pub mod ensemble_lobe;
 mod facet_table;
 pub mod grid;
 mod instance_lobe;
-pub mod kernels;
 pub mod mesh;
 
 pub use ensemble_lobe::EnsembleLobe;
 pub use facet_table::FacetTable;
 pub use grid::{Grid, Layout};
 pub use instance_lobe::{InstanceLobe, Spot};
-pub use kernels::Kernels;
 pub use mesh::Mesh;

@@ -1,10 +1,11 @@
 //! The closed forms as programs for a renderer that compiles its own code: recorded from the same text that everything else runs.
 
-use super::ensemble_lobe::MeanLobe;
-use super::facet_table::FacetTable;
 use crate::brdf::{Lobe, Parts};
+use crate::empirical::FineGrid;
 use crate::numeric::Real;
 use crate::numeric::real::Extended;
+use crate::render::FacetTable;
+use crate::render::ensemble_lobe::MeanLobe;
 use crate::simd::recorded::{Program, Recording, Traced};
 
 /// What the inputs of a program are, by their numbers.
@@ -38,20 +39,31 @@ pub struct Places<'a> {
     pub footprint: Option<&'a FacetTable<f64>>,
 }
 
+/// What is evaluated.
+#[derive(Debug, Clone, Copy)]
+pub enum Mean<'a> {
+    /// The lobe itself.
+    Facets,
+    /// A sea from afar.
+    Ensemble(&'a MeanLobe<f64>),
+    /// The same by a table of the empirical model.
+    Empirical(&'a FineGrid<f64>),
+}
+
 /// The programs of a sea.
 #[derive(Debug, Clone, Default)]
 pub struct Kernels {
     /// Coefficients and tables.
     pub recording: Recording,
     /// For facets alone, whitecaps alone and both: f times a cosine; the same where its last digits do not matter; the density of
-    /// draws; and a direction with 1 where it comes from the whitecaps. Last rho (Eqs. 61-63).
+    /// draws; and a direction with 1 where it comes from the whitecaps. Last rho
+    /// (Eqs. 61-63) and sine and cosine of so many turns, both of the last input.
     pub programs: Vec<Program>,
 }
 
 impl Kernels {
-    /// Of a lobe; with `mean` it draws for this one, which takes the observer from the other inputs than it does where the
-    /// order matters.
-    pub fn new(lobe: &Lobe<f64>, mean: Option<&MeanLobe<f64>>, places: Places) -> Self {
+    /// Of a lobe; where there is another mean than its own, it draws for this one.
+    pub fn new(lobe: &Lobe<f64>, mean: Mean, places: Places) -> Self {
         let mut recording = Recording::default();
         let mut programs = Vec::new();
         let mut record = |program: &mut dyn FnMut(&Sea, &[Traced]) -> Vec<Traced>| {
@@ -67,6 +79,10 @@ impl Kernels {
             record(&mut |sea, x| sea.draw(x, parts));
         }
         record(&mut |sea, x| vec![sea.lobe.facets.reflectance.eval(x[inputs::COSINE])]);
+        record(&mut |_, x| {
+            let (sin, cos) = x[inputs::COSINE].sin_cos_turns();
+            vec![sin, cos]
+        });
         Self { recording, programs }
     }
 }
@@ -74,7 +90,8 @@ impl Kernels {
 /// A sea at a place, as it is recorded.
 struct Sea {
     lobe: Lobe<Traced>,
-    mean: Option<MeanLobe<Traced>>,
+    ensemble: Option<MeanLobe<Traced>>,
+    empirical: Option<FineGrid<Traced>>,
     normal: Option<[Traced; 3]>,
 }
 
@@ -83,9 +100,21 @@ fn vector(x: &[Traced], first: usize) -> [Traced; 3] {
 }
 
 impl Sea {
-    fn new(lobe: &Lobe<f64>, mean: Option<&MeanLobe<f64>>, places: Places, x: &[Traced]) -> Self {
+    fn new(lobe: &Lobe<f64>, mean: Mean, places: Places, x: &[Traced]) -> Self {
         let mut lobe: Lobe<Traced> = lobe.cast();
-        let mean = mean.map(|mean| mean.cast());
+        let (mut ensemble, mut empirical) = (None, None);
+        match mean {
+            Mean::Facets => {}
+            Mean::Ensemble(mean) => ensemble = Some(mean.cast()),
+            Mean::Empirical(grid) => empirical = Some(grid.cast()),
+        }
+        // These need no digits that turning takes: where the wind comes from is data.
+        let turned = ensemble.as_mut().map(|mean: &mut MeanLobe<Traced>| &mut mean.lobe);
+        let turned = turned.or(empirical.as_mut().map(|grid: &mut FineGrid<Traced>| &mut grid.lobe));
+        if let Some(of_mean) = turned {
+            of_mean.facets.wind.quadrant = None;
+            lobe.facets.wind.quadrant = None;
+        }
         if let Some(table) = places.footprint {
             table.cast().set(&mut lobe.facets, x[inputs::FOOTPRINT]);
         }
@@ -93,13 +122,16 @@ impl Sea {
             lobe.whitecap_fraction = x[inputs::WHITECAP];
             lobe.smooth_fraction = Traced::of(1.0) - x[inputs::WHITECAP];
         }
-        Self { lobe, mean, normal: places.normal.then(|| vector(x, inputs::NORMAL)) }
+        Self { lobe, ensemble, empirical, normal: places.normal.then(|| vector(x, inputs::NORMAL)) }
     }
 
     fn eval(&self, x: &[Traced], parts: Parts, last_digits: bool) -> Traced {
         let (i, o) = (vector(x, inputs::SOURCE), vector(x, inputs::OBSERVER));
-        if let Some(mean) = &self.mean {
+        if let Some(mean) = &self.ensemble {
             return mean.eval(i, o, parts) * x[inputs::COSINE];
+        }
+        if let Some(grid) = &self.empirical {
+            return grid.eval(i, o, parts) * x[inputs::COSINE];
         }
         if last_digits && self.lobe.facets.needs_extended(self.normal.is_none()) {
             self.eval_in::<<Traced as Real>::Extended>(i, o, parts, x[inputs::COSINE])
@@ -124,6 +156,9 @@ impl Sea {
 
     fn pdf(&self, x: &[Traced], parts: Parts) -> Traced {
         let (i, o, zero) = (vector(x, inputs::SOURCE), vector(x, inputs::OBSERVER), Traced::of(0.0));
+        if self.ensemble.is_some() || self.empirical.is_some() {
+            return self.lobe.pdf_in::<<Traced as Real>::Plain>(i, o, None, parts);
+        }
         let pdf = self.lobe.pdf_parts(i, o, self.normal, parts);
         if self.normal.is_none() {
             return pdf;
