@@ -225,7 +225,6 @@ impl<T: Real> Facets<T> {
         let Some(n) = n else {
             let z = z.at_least(T::SMALL);
             let inv_z = z.to_density().recip();
-            let slope = |h: E| T::from_density(h.to_density() * inv_z);
             let tan2 = flat2 / (z.to_density() * z.to_density());
             return Geometry {
                 cos: [i[2], o[2]],
@@ -233,7 +232,7 @@ impl<T: Real> Facets<T> {
                 tan2,
                 inv_cos2: one + tan2,
                 tilt: [[hu, z], [hc, z]],
-                slope: [slope(hu), slope(hc)],
+                slope: [T::from_density(hu.to_density() * inv_z), T::from_density(hc.to_density() * inv_z)],
                 local_i: self.wind.vector_to_wind(i),
                 tangential: [[i[0], i[1]], [o[0], o[1]]],
                 sum: T::from_density(length2),
@@ -242,12 +241,14 @@ impl<T: Real> Facets<T> {
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
         let [nx, ny, nz] = [E::from_real(n[0]), E::from_real(n[1]), E::from_real(n[2])];
         let [nu, nc] = self.wind.components(nx, ny);
-        let across = |h: E, n: E| E::sum_of_products(h, nz, z, -n).normalize();
-        let [xu, xc] = self.wind.components(across(x, nx), across(y, ny));
-        let along = |h: E, n: E| E::sum_of_products(h, n, z, nz).normalize();
+        let across_x = E::sum_of_products(x, nz, z, -nx).normalize();
+        let [xu, xc] = self.wind.components(across_x, E::sum_of_products(y, nz, z, -ny).normalize());
+        let along_u = E::sum_of_products(hu, nu, z, nz).normalize();
+        let along_c = E::sum_of_products(hc, nc, z, nz).normalize();
         let frame = self.frame(n);
-        let local_i = frame.map(|axis| dot(axis, i));
-        let [u, c, along_n] = frame.map(|axis| dot(axis, [i[0] + o[0], i[1] + o[1], i[2] + o[2]]));
+        let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
+        let local_i = [dot(frame[0], i), dot(frame[1], i), dot(frame[2], i)];
+        let [u, c, along_n] = [dot(frame[0], h), dot(frame[1], h), dot(frame[2], h)];
         let inv_n = T::max(along_n, T::SMALL).recip();
         let slope = [u * inv_n, c * inv_n];
         let tan2 = T::to_density(slope[0].mul_add(slope[0], slope[1] * slope[1]));
@@ -259,7 +260,7 @@ impl<T: Real> Facets<T> {
             cos_zeta,
             tan2,
             inv_cos2: length2 / (sum_n * sum_n),
-            tilt: [[xu, along(hu, nu)], [xc, along(hc, nc)]],
+            tilt: [[xu, along_u], [xc, along_c]],
             slope,
             local_i,
             tangential: [tangential_part(i, n), tangential_part(o, n)],
@@ -301,7 +302,7 @@ impl<T: Real> Facets<T> {
     /// `p/cos^4 xi` (Eqs. 72-73, 78-79) over its constants.
     #[inline(always)]
     fn density<E: Extended<T>>(&self, g: &Geometry<T, E>, level: bool) -> T::Density {
-        let [u, c] = g.tilt.map(|tilt| self.measure(tilt, level));
+        let [u, c] = [self.measure(g.tilt[0], level), self.measure(g.tilt[1], level)];
         let u = u.times(E::truncate(self.inv_width_u));
         self.tilt_density(u, c.times(E::truncate(self.inv_width_c)), g.inv_cos2)
     }
@@ -330,7 +331,7 @@ impl<T: Real> Facets<T> {
         if self.gram_charlier {
             let (high_u, high_c) = (u.to_density(), c.to_density());
             let correction = self.correction.eval(high_u, high_c);
-            p = p * Real::max(u.corrected(correction, || self.correction.steepest(high_u)), zero);
+            p = p * Real::max(u.corrected(correction, self.correction.steepest(high_u)), zero);
         }
         p
     }
@@ -348,23 +349,26 @@ impl<T: Real> Facets<T> {
     /// `cos theta_i cos theta_r/G` (Eqs. 64-67).
     #[inline(always)]
     fn projected_area<E>(&self, g: &Geometry<T, E>, rho: T) -> T {
-        let cos = g.cos.map(|cos| T::max(cos, T::of(GRAZING)));
-        self.masked_area(rho, cos, || g.tangential.map(|v| self.spread_along(v)))
+        let cos = [T::max(g.cos[0], T::of(GRAZING)), T::max(g.cos[1], T::of(GRAZING))];
+        let mut spreads = [T::of(0.0); 2];
+        if self.bounded {
+            spreads = [self.spread_along(g.tangential[0]), self.spread_along(g.tangential[1])];
+        }
+        self.masked_area(rho, cos, spreads)
     }
 
     /// `cos theta_i cos theta_r/G`, held to `rho/bound` times the larger of `(1 + Lambda) cos_i cos_r` of the two directions,
     /// Lambda by the facets' own slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
-    /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1. `spreads` gives
+    /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1. It needs `spreads`, the
     /// [`Facets::spread_along`] of both.
     #[inline(always)]
-    pub(crate) fn masked_area(&self, rho: T, [ci, cr]: [T; 2], spreads: impl FnOnce() -> [T; 2]) -> T {
+    pub(crate) fn masked_area(&self, rho: T, [ci, cr]: [T; 2], [spread_i, spread_o]: [T; 2]) -> T {
         let mut area = ci * cr;
         if self.shadowing {
             area = cr.mul_add(hidden(ci, self.sigma_shadow * sine(ci)), area);
             area = ci.mul_add(hidden(cr, self.sigma_shadow * sine(cr)), area);
         }
         if self.bounded {
-            let [spread_i, spread_o] = spreads();
             let [visible_i, visible_o] = [ci + hidden(ci, spread_i), cr + hidden(cr, spread_o)];
             area = T::max(area, rho / self.bound * T::max(visible_i * cr, visible_o * ci));
         }
@@ -442,15 +446,14 @@ impl<T: Real> Lobe<T> {
         parts: Parts,
     ) -> T {
         let g = self.facets.geometry::<E>(i, o, n);
-        let facets = || self.facets.lit(&g, n.is_none());
-        g.above_horizon(match parts {
-            Parts { facets: true, whitecaps: true } => {
-                self.whitecap_fraction.mul_add(self.whitecap_brdf, self.smooth_fraction * facets())
-            }
-            Parts { facets: true, .. } => self.smooth_fraction * facets(),
-            Parts { whitecaps: true, .. } => self.whitecap_fraction * self.whitecap_brdf,
-            _ => T::of(0.0),
-        })
+        let mut f = T::of(0.0);
+        if parts.facets {
+            f = self.smooth_fraction * self.facets.lit(&g, n.is_none());
+        }
+        if parts.whitecaps {
+            f = self.whitecap_fraction.mul_add(self.whitecap_brdf, f);
+        }
+        g.above_horizon(f)
     }
 }
 

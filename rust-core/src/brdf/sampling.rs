@@ -244,13 +244,13 @@ impl<T: Real> Lobe<T> {
         parts: Parts,
     ) -> T {
         let g = self.facets.geometry::<E>(i, o, n);
-        let diffuse = || g.cos[1] * T::of(FRAC_1_PI);
+        let diffuse = g.cos[1] * T::of(FRAC_1_PI);
         g.above_horizon(match parts {
             Parts { whitecaps: false, .. } => self.facets.pdf(&g),
-            Parts { facets: false, .. } => diffuse(),
+            Parts { facets: false, .. } => diffuse,
             _ => {
                 let [facets, whitecaps] = self.albedos(g.cos[0]);
-                let both = facets.mul_add(self.facets.pdf(&g), whitecaps * diffuse());
+                let both = facets.mul_add(self.facets.pdf(&g), whitecaps * diffuse);
                 both / T::max(facets + whitecaps, T::TINY)
             }
         })

@@ -97,7 +97,8 @@ impl<T: Real> GramCharlier<T> {
     /// The correction, without its clamp to what is not negative, for tilts in widths.
     #[inline(always)]
     pub fn eval(&self, u: T, c: T) -> T {
-        let [one, uu, cc, u4, uucc, c4] = EVEN.map(T::of);
+        let [one, uu, cc] = [T::of(EVEN[0]), T::of(EVEN[1]), T::of(EVEN[2])];
+        let [u4, uucc, c4] = [T::of(EVEN[3]), T::of(EVEN[4]), T::of(EVEN[5])];
         let (u2, c2) = (u * u, c * c);
         let mut even = c2.mul_add(c4.mul_add(c2, uucc.mul_add(u2, cc)), u2.mul_add(u4.mul_add(u2, uu), one));
         let [linear, cubic, mixed] = self.odd;

@@ -119,7 +119,7 @@ pub trait Extended<T: Real>: Copy + std::fmt::Debug + Neg<Output = Self> {
     /// `2^-(u^2 + c^2)`.
     fn gauss(u: Self, c: Self) -> T::Density;
     /// `value` of a function at `self`, taken at the rounded `self`, corrected by the function's derivative there.
-    fn corrected(self, value: T::Density, derivative: impl FnOnce() -> T::Density) -> T::Density;
+    fn corrected(self, value: T::Density, derivative: T::Density) -> T::Density;
 }
 
 /// One number: what lanes are not.
@@ -259,7 +259,7 @@ macro_rules! scalar {
             fn gauss(u: Self, c: Self) -> f64 {
                 (-(u * u + c * c)).exp2()
             }
-            fn corrected(self, value: f64, _derivative: impl FnOnce() -> f64) -> f64 {
+            fn corrected(self, value: f64, _derivative: f64) -> f64 {
                 value
             }
         }

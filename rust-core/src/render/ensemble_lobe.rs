@@ -256,9 +256,12 @@ impl<T: Tabulated> MeanLobe<T> {
         let (cos_i, cos_o) = (cosine(i), cosine(o));
         let lit = T::lt(zero, cos_i) & T::lt(zero, cos_o);
         let tangential = |v: Local<T>| [0, 1].map(|k| v[2].mul_add(slope[k], v[k]) * n_z);
-        let area = facets.masked_area(rho, [cos_i, cos_o], || {
-            [i, o].map(|v| spread(tangential(v), [facets.sigma_u, facets.sigma_c]))
-        });
+        let sigmas = [facets.sigma_u, facets.sigma_c];
+        let mut spreads = [zero; 2];
+        if facets.bounded {
+            spreads = [spread(tangential(i), sigmas), spread(tangential(o), sigmas)];
+        }
+        let area = facets.masked_area(rho, [cos_i, cos_o], spreads);
         let seen = if self.report { cos_i } else { cos_i * cos_o };
         T::select(lit, seen / T::max(area, T::TINY), zero)
     }

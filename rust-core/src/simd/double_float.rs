@@ -200,7 +200,7 @@ impl<V: Arithmetic, const FINE: bool> Extended<Lanes<V>> for DoubleFloat<V, FINE
         Lanes::exp2_split(Lanes::splat(-2.0).mul_add(low, rest), n)
     }
     #[inline(always)]
-    fn corrected(self, value: Lanes<V>, derivative: impl FnOnce() -> Lanes<V>) -> Lanes<V> {
-        if FINE { derivative().detach().mul_add(self.low, value) } else { value }
+    fn corrected(self, value: Lanes<V>, derivative: Lanes<V>) -> Lanes<V> {
+        if FINE { derivative.detach().mul_add(self.low, value) } else { value }
     }
 }
