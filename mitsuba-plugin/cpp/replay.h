@@ -105,10 +105,7 @@ private:
     }
 
     template <size_t N, typename Source> static Packet gather(const Source &table, const UInt32 &at, const Mask &active) {
-        using Number = drjit::value_t<Source>;
-        using Value = drjit::float32_array_t<Float>;
-        drjit::Array<Value, N> found(drjit::gather<drjit::Array<std::conditional_t<std::is_same_v<Number, drjit::half>,
-            drjit::float16_array_t<Float>, Float>, N>>(table, at, active));
+        drjit::Array<Float, N> found(drjit::gather<drjit::Array<Source, N>>(table, at, active));
         Packet packet = 0.f;
         for (size_t k = 0; k < N; ++k)
             packet[k] = found[k];

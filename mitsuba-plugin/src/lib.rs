@@ -5,7 +5,7 @@ mod surface;
 
 use prob_water::kernels::{Mean, Places};
 use prob_water::sampling::FACET_ALBEDO_FLOOR;
-use prob_water::simd::recorded::Instruction;
+use prob_water::simd::recorded::{Instruction, Operation};
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
 use prob_water::{
     EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Kernels, Lobe, Surface, Table, whitecap,
@@ -33,7 +33,7 @@ mod ffi {
         Empirical,
     }
 
-    /// `prob_water::simd::recorded::Operation`, in its order.
+    /// `prob_water::simd::recorded::Operation`.
     #[repr(u32)]
     enum Operation {
         Constant,
@@ -125,6 +125,22 @@ mod ffi {
         /// Changes what `describe` tells of the time.
         fn set_time(self: &mut Water, time: f64);
     }
+}
+
+/// The bridge's number of an operation: one that the bridge lacks, or has under another name, does not compile.
+macro_rules! numbered {
+    ($($name:ident)*) => {
+        fn number_of(operation: Operation) -> u32 {
+            match operation {
+                $(Operation::$name => ffi::Operation::$name.repr,)*
+            }
+        }
+    };
+}
+numbered! {
+    Constant Coefficient Input Add Subtract Multiply Divide Negate Absolute
+    SquareRoot Reciprocal ReciprocalRoot MultiplyAdd Residual Less And Or Not Select Round
+    ScaleByPowerOf2 Exponent FlipSign Detach Floor Lookup Element
 }
 
 /// Parameters being collected.
@@ -265,7 +281,7 @@ impl Water {
         let normal = matches!(self.waves, Waves::Drawn(_));
         let places = Places { normal, whitecap: whitecaps || normal, footprint: self.facets.as_ref() };
         let Kernels { recording, programs } = Kernels::new(&self.precise, mean, places);
-        let word = |(operation, [a, b, c]): &Instruction| [*operation as u32, *a, *b, *c];
+        let word = |(operation, [a, b, c]): &Instruction| [number_of(*operation), *a, *b, *c];
         ffi::Kernels {
             coefficients: recording.coefficients,
             tables: recording

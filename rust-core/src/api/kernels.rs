@@ -87,11 +87,17 @@ impl Kernels {
     }
 }
 
+/// [`Mean`] as it is recorded.
+enum TracedMean {
+    Facets,
+    Ensemble(MeanLobe<Traced>),
+    Empirical(FineGrid<Traced>),
+}
+
 /// A sea at a place, as it is recorded.
 struct Sea {
     lobe: Lobe<Traced>,
-    ensemble: Option<MeanLobe<Traced>>,
-    empirical: Option<FineGrid<Traced>>,
+    mean: TracedMean,
     normal: Option<[Traced; 3]>,
 }
 
@@ -102,19 +108,22 @@ fn vector(x: &[Traced], first: usize) -> [Traced; 3] {
 impl Sea {
     fn new(lobe: &Lobe<f64>, mean: Mean, places: Places, x: &[Traced]) -> Self {
         let mut lobe: Lobe<Traced> = lobe.cast();
-        let (mut ensemble, mut empirical) = (None, None);
-        match mean {
-            Mean::Facets => {}
-            Mean::Ensemble(mean) => ensemble = Some(mean.cast()),
-            Mean::Empirical(grid) => empirical = Some(grid.cast()),
-        }
-        // These need no digits that turning takes: where the wind comes from is data.
-        let turned = ensemble.as_mut().map(|mean: &mut MeanLobe<Traced>| &mut mean.lobe);
-        let turned = turned.or(empirical.as_mut().map(|grid: &mut FineGrid<Traced>| &mut grid.lobe));
-        if let Some(of_mean) = turned {
-            of_mean.facets.wind.quadrant = None;
-            lobe.facets.wind.quadrant = None;
-        }
+        // Means need no digits that turning takes: where the wind comes from is data.
+        let mean = match mean {
+            Mean::Facets => TracedMean::Facets,
+            Mean::Ensemble(mean) => {
+                let mut mean: MeanLobe<Traced> = mean.cast();
+                mean.lobe.facets.wind.quadrant = None;
+                lobe.facets.wind.quadrant = None;
+                TracedMean::Ensemble(mean)
+            }
+            Mean::Empirical(grid) => {
+                let mut grid: FineGrid<Traced> = grid.cast();
+                grid.lobe.facets.wind.quadrant = None;
+                lobe.facets.wind.quadrant = None;
+                TracedMean::Empirical(grid)
+            }
+        };
         if let Some(table) = places.footprint {
             table.cast().set(&mut lobe.facets, x[inputs::FOOTPRINT]);
         }
@@ -122,21 +131,19 @@ impl Sea {
             lobe.whitecap_fraction = x[inputs::WHITECAP];
             lobe.smooth_fraction = Traced::of(1.0) - x[inputs::WHITECAP];
         }
-        Self { lobe, ensemble, empirical, normal: places.normal.then(|| vector(x, inputs::NORMAL)) }
+        Self { lobe, mean, normal: places.normal.then(|| vector(x, inputs::NORMAL)) }
     }
 
     fn eval(&self, x: &[Traced], parts: Parts, last_digits: bool) -> Traced {
         let (i, o) = (vector(x, inputs::SOURCE), vector(x, inputs::OBSERVER));
-        if let Some(mean) = &self.ensemble {
-            return mean.eval(i, o, parts) * x[inputs::COSINE];
-        }
-        if let Some(grid) = &self.empirical {
-            return grid.eval(i, o, parts) * x[inputs::COSINE];
-        }
-        if last_digits && self.lobe.facets.needs_extended(self.normal.is_none()) {
-            self.eval_in::<<Traced as Real>::Extended>(i, o, parts, x[inputs::COSINE])
-        } else {
-            self.eval_in::<<Traced as Real>::Plain>(i, o, parts, x[inputs::COSINE])
+        let cosine = x[inputs::COSINE];
+        match &self.mean {
+            TracedMean::Ensemble(mean) => mean.eval(i, o, parts) * cosine,
+            TracedMean::Empirical(grid) => grid.eval(i, o, parts) * cosine,
+            TracedMean::Facets if last_digits && self.lobe.facets.needs_extended(self.normal.is_none()) => {
+                self.eval_in::<<Traced as Real>::Extended>(i, o, parts, cosine)
+            }
+            TracedMean::Facets => self.eval_in::<<Traced as Real>::Plain>(i, o, parts, cosine),
         }
     }
 
@@ -156,7 +163,7 @@ impl Sea {
 
     fn pdf(&self, x: &[Traced], parts: Parts) -> Traced {
         let (i, o, zero) = (vector(x, inputs::SOURCE), vector(x, inputs::OBSERVER), Traced::of(0.0));
-        if self.ensemble.is_some() || self.empirical.is_some() {
+        if !matches!(self.mean, TracedMean::Facets) {
             return self.lobe.pdf_in::<<Traced as Real>::Plain>(i, o, None, parts);
         }
         let pdf = self.lobe.pdf_parts(i, o, self.normal, parts);

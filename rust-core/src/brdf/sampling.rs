@@ -124,8 +124,7 @@ impl<T: Real> Facets<T> {
         (sinc, cos, T::lt(tilt2, T::of(FRAC_PI_2 * FRAC_PI_2)))
     }
 
-    /// A half vector, zero where the draw is lost, for a number that chooses between the two kinds of tilt, the first of two
-    /// more, and the second with sine and cosine of `turns` turns of what [`Facets::azimuth`] chose.
+    /// A half vector, and whether there is one, of two uniform numbers and what a third one chose.
     #[inline(always)]
     fn sample_half(&self, i: Vec3<T>, p: &Proposal<T>, u: [T; 2], draw: Draw<T>) -> (Vec3<T>, T::Mask) {
         let (zero, one) = (T::of(0.0), T::of(1.0));

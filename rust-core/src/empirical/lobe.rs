@@ -71,7 +71,6 @@ pub struct EmpiricalLobe {
     /// Draws directions, and knows their density: the facets of all waves, and whitecaps in proportion to what they
     /// cover. Its `eval` is not this lobe's.
     pub sampler: Lobe<f64>,
-    across: Across,
     spreads: Spreads,
     /// Tangents of half the angles theta_i and theta_r between which the table has nodes.
     incidences: [f64; 2],
@@ -158,7 +157,7 @@ impl EmpiricalLobe {
         sampler = sampler.with_whitecaps(f64::from(in_plane[THETAS / 2][1]));
         let across = water.parameters.across;
         let grid = fine_grid(sampler, across, &spreads, incidences[1], &in_plane, &widths, &densities, steps);
-        Ok(Self { sampler, across, spreads, incidences, thetas, in_plane, widths, single: grid.cast(), grid })
+        Ok(Self { sampler, spreads, incidences, thetas, in_plane, widths, single: grid.cast(), grid })
     }
 
     /// What is evaluated; in any other number type by its `cast`.
@@ -185,7 +184,7 @@ impl EmpiricalLobe {
         }
         let place = self.grid.place(i, o);
         let (moments, rho) = self.moments(i, o, &place);
-        let [mean, std] = match self.across {
+        let [mean, std] = match self.grid.across {
             Across::Slopes => moments.brdf(rho, self.sampler.whitecap_brdf),
             Across::Report => {
                 let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths);
@@ -208,7 +207,7 @@ impl EmpiricalLobe {
     fn moments(&self, i: [f64; 3], o: [f64; 3], place: &Place<f64>) -> (Moments, f64) {
         let [ratio, whitecaps, square] = place.in_plane(&self.in_plane);
         let (density, visible) = self.grid.level(i, o, place);
-        let seen = if self.across == Across::Report { place.view() } else { o };
+        let seen = if self.grid.across == Across::Report { place.view() } else { o };
         let facets = visible * (ratio + density).exp();
         let square = (square + self.spreads.ln_square(i, seen)).clamp(0.0, LARGEST_SQUARE).exp();
         let moments = Moments { facets, facets2: facets * facets * square, whitecaps };
@@ -237,7 +236,7 @@ impl EmpiricalLobe {
         let foam = self.sampler.whitecap_brdf;
         let unseen = self.spreads.unseen(i, o).min(1.0 - whitecaps);
         let open = (1.0 - whitecaps - unseen).max(1e-6);
-        let lobe = (self.across == Across::Report).then(|| {
+        let lobe = (self.grid.across == Across::Report).then(|| {
             let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths);
             let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
             let single = (sigma * sigma - 2.0 * u_delta * u_delta).max(0.04 * sigma * sigma).sqrt();

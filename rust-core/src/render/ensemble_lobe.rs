@@ -72,18 +72,18 @@ pub struct MeanLobe<T: Real> {
     /// The facets on the waves; of whitecaps their BRDF.
     pub(crate) lobe: Lobe<T>,
     /// Nodes on a side of the table, the half vector's slope 0 in the middle.
-    pub rows: u32,
+    rows: u32,
     /// The inverse of the step between nodes, tilt angles upwind and crosswind.
-    pub inv_step: [T; 2],
+    inv_step: [T; 2],
     /// Row by row (upwind) of every node: D, means and variances of the slopes upwind and crosswind, the second differences of D
     /// upwind and crosswind (which linear interpolation would miss), and a zero.
-    pub cells: Packets,
+    cells: Packets,
     /// Standard deviations of the drawn slopes, upwind and crosswind.
-    pub sigma: [T; 2],
+    sigma: [T; 2],
     /// Mean of N_z under whitecaps, and of N_z times the squares of the slope; without N_z for [`Average::Report`].
-    pub foam: [T; 3],
+    foam: [T; 3],
     /// [`Average::Report`]: the mean of f, not of power.
-    pub report: bool,
+    report: bool,
 }
 
 impl EnsembleLobe {

@@ -14,7 +14,6 @@ use std::ops::{BitAnd, BitOr, Not};
 
 /// What an operation does with its operands a, b and c.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[repr(u32)]
 pub enum Operation {
     /// The number with the bits a.
     Constant,
