@@ -1,72 +1,220 @@
 /**
- * What changes from place to place, as Dr.Jit expressions: one drawn sea, the core's
- * instance_lobe.rs.
+ * The water at one place, with one interface: in traced code the core's programs (replay.h), in scalar code its functions.
  */
 #pragma once
 
 #include "replay.h"
-#include <algorithm>
 #include <drjit/while_loop.h>
-#include <mitsuba/core/fwd.h>
 
 namespace prob_water {
 
-/// One drawn sea at one time.
-template <typename Float_> struct Drawn {
-    using Float = Float_;
-    /// A place has digits to spare; not on GPUs, most of which are slow in double precision.
-    using Wide = std::conditional_t<drjit::is_cuda_v<Float>, Float, drjit::float64_array_t<Float>>;
-    using UInt32 = drjit::uint32_array_t<Float>;
-    using Mask = drjit::mask_t<Float>;
+/// What is asked for: some of the lobes, for a path that runs to the light or comes from it.
+struct Request {
+    bool facets, whitecaps, water_leaving, to_light;
+    uint32_t parts() const { return (facets ? 1u : 0u) | (whitecaps ? 2u : 0u); }
+    bool surface() const { return facets || whitecaps; }
+    bool none() const { return !surface() && !water_leaving; }
+};
+
+/// Position in m, footprint in m and probability of a whitecap, as far as they differ from place to place.
+template <typename Float> struct Where {
+    /// Extended precision; not on GPUs, most of which are slow in double precision.
+    using Extended = std::conditional_t<drjit::is_cuda_v<Float>, Float, drjit::float64_array_t<Float>>;
+    Extended x = 0, y = 0;
+    Float footprint = std::numeric_limits<float>::quiet_NaN(), whitecap = footprint;
+};
+
+template <typename Float> struct Draw {
+    mitsuba::Vector<Float, 3> wo;
+    /// f cos(theta_o) and density, 1/sr.
+    Float value, pdf;
+    drjit::mask_t<Float> whitecap;
+};
+
+template <typename Float> struct TracedPlace {
     using Vector3f = mitsuba::Vector<Float, 3>;
-    using Buffer = mitsuba::DynamicBuffer<Wide>;
-    /// Turns per m along x and y, turns at the origin, amplitude, omega^2, log2(k/pi), and what fills a packet.
-    using Wave = drjit::Array<Wide, 8>;
 
-    /// 0 for another surface than an instance.
-    uint32_t count = 0;
-    bool is_drawn = false;
-    /// Vertical acceleration, m/s^2, below which there is no whitecap, and the probability's fall per unit.
-    Float no_whitecap, fall;
-    Buffer waves;
+    const Replay<Float> &replay;
+    bool ordered;
+    Inputs<Float> inputs;
 
-    explicit Drawn(const DrawnWaves &w) : count((uint32_t) w.cells.size() / 8), is_drawn(w.drawn) {
-        if (!is_drawn)
-            return;
-        no_whitecap = drjit::opaque<Float>((float) w.onset[1]);
-        fall = drjit::opaque<Float>((float) (1. / std::max(w.onset[1] - w.onset[0], 1e-30)));
-        std::vector<drjit::scalar_t<Wide>> cells(w.cells.begin(), w.cells.end());
-        cells.resize(std::max<size_t>(cells.size(), 8));
-        waves = drjit::load<Buffer>(cells.data(), cells.size());
+    Float eval(Request r, const Vector3f &wi, const Vector3f &wo) const { return value(Kernel::Eval, r, wi, wo); }
+
+    Float pdf(Request r, const Vector3f &wi, const Vector3f &wo) const { return run(Kernel::Pdf, r, wi, wo)[0]; }
+
+    Draw<Float> sample(Request r, const Vector3f &wi, const Vector3f &u) const {
+        Inputs<Float> in = inputs;
+        in.set(Input::Source, wi);
+        in.set(Input::Random, u);
+        auto drawn = replay.run(Kernel::Draw, r.parts(), in);
+        Vector3f wo(drawn[0], drawn[1], drawn[2]);
+        return { wo, value(Kernel::Weight, r, wi, wo), pdf(r, wi, wo), drawn[3] > 0.f };
     }
 
-    DRJIT_STRUCT(Drawn, no_whitecap, fall, waves)
+    /// f cos(theta_o) of light from below for a reflectance of 1, and the density of draws by cosine.
+    std::pair<Float, Float> water_leaving(const Vector3f &wi, const Vector3f &wo) const {
+        auto found = run(Kernel::WaterLeaving, {}, wi, wo);
+        return { found[0], found[1] };
+    }
 
-    /// The wave normal over a place in m, and the probability of a whitecap. With a footprint the waves too short for it
-    /// are left out.
-    std::pair<Vector3f, Float> at(const Wide &x, const Wide &y, const Float *footprint, const Replay<Float> &replay) const {
+    Float water_leaving_share(Request r, const Vector3f &wi, const Float &reflectance) const {
+        Inputs<Float> in = inputs;
+        in.set(Input::Source, wi);
+        in.set(Input::Reflectance, reflectance);
+        return replay.run(Kernel::WaterLeavingShare, r.parts(), in)[0];
+    }
+
+    /// Diffuse reflectance of the whitecaps, and the share of water without any.
+    std::pair<Float, Float> diffuse() const {
+        auto found = replay.run(Kernel::Diffuse, 0, inputs);
+        return { found[0], found[1] };
+    }
+
+private:
+    /// The order matters to means alone; densities are of draws from wi, whichever way the light goes.
+    Float value(Kernel kernel, Request r, const Vector3f &wi, const Vector3f &wo) const {
+        bool turned = ordered && r.to_light;
+        return run(kernel, r, turned ? wo : wi, turned ? wi : wo, wo.z())[0];
+    }
+
+    std::vector<Float> run(Kernel kernel, Request r, const Vector3f &i, const Vector3f &o, const Float &cos = 0.f) const {
+        Inputs<Float> in = inputs;
+        in.set(Input::Source, i);
+        in.set(Input::Observer, o);
+        in.set(Input::Cosine, cos);
+        return replay.run(kernel, r.parts(), in);
+    }
+};
+
+template <typename Float_> struct TracedSea {
+    using Float = Float_;
+    using Place = TracedPlace<Float>;
+    using Extended = typename Where<Float>::Extended;
+    using Vector3f = mitsuba::Vector<Float, 3>;
+    using UInt32 = drjit::uint32_array_t<Float>;
+    using Buffer = mitsuba::DynamicBuffer<Extended>;
+
+    Replay<Float> replay;
+    Buffer waves;
+    uint32_t count = 0;
+    Traits traits{};
+
+    TracedSea(const Water &water) : replay(water.kernels()), traits(water.traits()) {
+        rust::Vec<double> found = water.drawn_waves();
+        count = (uint32_t) found.size() / 8;
+        std::vector<drjit::scalar_t<Extended>> numbers(found.begin(), found.end());
+        numbers.resize(std::max<size_t>(numbers.size(), 8));
+        waves = drjit::load<Buffer>(numbers.data(), numbers.size());
+        // Copies from here to there keep their memory up to the next kernel, or to this.
+        drjit::sync_thread();
+    }
+
+    DRJIT_STRUCT(TracedSea, replay, waves)
+
+    Place at(const Where<Float> &where) const {
+        Place place{ replay, traits.ordered, {} };
+        place.inputs.set(Input::Footprint, where.footprint);
+        place.inputs.set(Input::Whitecap, where.whitecap);
+        if (traits.drawn)
+            add_waves(where, place.inputs);
+        return place;
+    }
+
+private:
+    /// The wave normal and the probability of a whitecap.
+    void add_waves(const Where<Float> &where, Inputs<Float> &inputs) const {
         namespace dr = drjit;
-        Float reach = footprint ? dr::log2(*footprint) : Float(0.f);
-        auto [j, slope_x, slope_y, acceleration] = dr::while_loop(
-            dr::make_tuple(UInt32(0), Float(0.f), Float(0.f), Float(0.f)),
-            [&](const UInt32 &j, auto &...) { return j < count; },
-            [&](UInt32 &j, Float &slope_x, Float &slope_y, Float &acceleration) {
-                Wave w = dr::gather<Wave>(waves, j);
-                Wide turns = dr::fmadd(w[0], x, dr::fmadd(w[1], y, w[2]));
-                auto [sin, cos] = replay.sincos_turns(Float(turns - dr::floor(turns)));
-                Float a(w[3]);
-                if (footprint)
-                    a *= dr::sqrt(dr::clip(.5f - (Float(w[5]) + reach), 0.f, 1.f));
-                Float steep = -dr::TwoPi<float> * a * sin;
-                slope_x = dr::fmadd(steep, Float(w[0]), slope_x);
-                slope_y = dr::fmadd(steep, Float(w[1]), slope_y);
-                acceleration = dr::fnmadd(a * Float(w[4]), cos, acceleration);
+        Float log2_footprint = traits.varying_footprint ? dr::log2(where.footprint) : Float(0.f);
+        Inputs<Float> in;
+        auto [j, sums] = dr::while_loop(
+            dr::make_tuple(UInt32(0), Vector3f(0.f)), [&](const UInt32 &j, auto &...) { return j < count; },
+            [&](UInt32 &j, Vector3f &sums) {
+                auto wave = dr::gather<dr::Array<Extended, 8>>(waves, j);
+                Extended turns = dr::fmadd(wave[1], where.x, dr::fmadd(wave[2], where.y, wave[0]));
+                in.set(Input::Wave, Float(turns - dr::floor(turns)));
+                for (size_t k = 1; k < 6; ++k)
+                    in.numbers[(size_t) Input::Wave + k] = Float(wave[k]);
+                in.set(Input::Footprint, log2_footprint);
+                in.set(Input::Sums, sums);
+                auto found = replay.run(Kernel::Wave, 0, in);
+                sums = { found[0], found[1], found[2] };
                 j += 1u;
             },
             "waves of prob_water");
-        Vector3f n = dr::normalize(Vector3f(-slope_x, -slope_y, 1.f));
-        return { n, dr::clip((no_whitecap - acceleration) * fall, 0.f, 1.f) };
+        in.set(Input::Sums, sums);
+        auto found = replay.run(Kernel::Normal, 0, in);
+        inputs.set(Input::Normal, Vector3f(found[0], found[1], found[2]));
+        if (!traits.whitecap_texture)
+            inputs.set(Input::Whitecap, found[3]);
     }
 };
+
+// The core's functions for scalar variants: mitsuba-plugin/src/evaluate.rs.
+extern "C" {
+struct ProbWaterSample {
+    float direction[3], pdf, value;
+    bool whitecap;
+};
+static_assert(sizeof(ProbWaterSample) == 24 && sizeof(Where<float>) == 24, "as the core has them");
+struct ProbWaterPair {
+    float first, second;
+};
+struct ProbWaterLocal {
+    alignas(16) unsigned char bytes[256];
+};
+void prob_water_local(const Water *, const Where<float> *, ProbWaterLocal *);
+float prob_water_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
+float prob_water_pdf(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o);
+ProbWaterSample prob_water_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
+ProbWaterPair prob_water_leaving(const ProbWaterLocal *, const float *i, const float *o);
+float prob_water_leaving_share(const ProbWaterLocal *, uint32_t parts, const float *i, float reflectance);
+ProbWaterPair prob_water_diffuse(const ProbWaterLocal *);
+}
+
+template <typename Float> struct ScalarPlace {
+    using Vector3f = mitsuba::Vector<Float, 3>;
+    using Pair = std::pair<Float, Float>;
+
+    ProbWaterLocal local;
+
+    Float eval(Request r, const Vector3f &i, const Vector3f &o) const {
+        return prob_water_eval(&local, r.parts(), i.data(), o.data(), r.to_light);
+    }
+    Float pdf(Request r, const Vector3f &i, const Vector3f &o) const {
+        return prob_water_pdf(&local, r.parts(), i.data(), o.data());
+    }
+    Draw<Float> sample(Request r, const Vector3f &i, const Vector3f &u) const {
+        ProbWaterSample s = prob_water_sample(&local, r.parts(), i.data(), u.data(), r.to_light);
+        return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, s.pdf, s.whitecap };
+    }
+    Pair water_leaving(const Vector3f &i, const Vector3f &o) const {
+        ProbWaterPair found = prob_water_leaving(&local, i.data(), o.data());
+        return { found.first, found.second };
+    }
+    Float water_leaving_share(Request r, const Vector3f &i, Float reflectance) const {
+        return prob_water_leaving_share(&local, r.parts(), i.data(), reflectance);
+    }
+    Pair diffuse() const {
+        ProbWaterPair found = prob_water_diffuse(&local);
+        return { found.first, found.second };
+    }
+};
+
+template <typename Float> struct ScalarSea {
+    using Place = ScalarPlace<Float>;
+
+    const Water *water = nullptr;
+
+    ScalarSea() = default;
+    explicit ScalarSea(const Water &water) : water(&water) {}
+
+    Place at(const Where<Float> &where) const {
+        Place place;
+        prob_water_local(water, &where, &place.local);
+        return place;
+    }
+};
+
+template <typename Float> using Sea = std::conditional_t<drjit::is_jit_v<Float>, TracedSea<Float>, ScalarSea<Float>>;
 
 } // namespace prob_water

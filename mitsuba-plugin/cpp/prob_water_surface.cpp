@@ -15,90 +15,7 @@
 
 NAMESPACE_BEGIN(mitsuba)
 
-/**!
-.. _shape-prob_water_surface:
-
-A drawn sea (:monosp:`prob_water_surface`)
-------------------------------------------
-
-.. pluginparameters::
-
- * - center
-   - |point|
-   - Where the cells are smallest, m: x and y in the shape's own coordinates, below the camera, say; z is 0. (Default:
-     0, 0, 0)
-
- * - radius
-   - |float|
-   - Distance of the mesh's edge from there, m, up to 1e6. (Default: 20000)
-
- * - azimuth, opening
-   - |float|
-   - Middle and angle of the sector that is built, degrees counter-clockwise from +x. (Default: 0 and 360, all around)
-
- * - vertices
-   - |int|
-   - Most vertices: cells grow with the distance as little as these allow. (Default: 1000000)
-
- * - memory
-   - |int|
-   - Most memory in MiB while the scene is built; a mesh that needs more is refused before it is begun. (Default: 2048)
-
- * - footprint
-   - |float|
-   - Footprint D in m at the centre, where a cell is a third of it: waves longer than 2 D are geometry, shorter ones facets.
-     (Default: 0.15)
-
- * - components, seed
-   - |int|
-   - How many waves are drawn, evenly over the spectrum, and which. (Default: 512 and 0)
-
- * - time
-   - |float|
-   - Time in s; setting it moves the waves. (Default: 0)
-   - |exposed|
-
- * - wind_speed, wind_height, friction_velocity, beaufort, wind_direction, depth, fetch, water, whitecaps
-   - |float|, |string| or |bool|
-   - The sea, as for :monosp:`prob_water`; the wind's azimuth counts from the shape's own +x.
-
- * - wavelength, ior, fresnel, slope_measure, readings, shadowing, gram_charlier
-   - |float|, |string| or |bool|
-   - The facets, as for :monosp:`prob_water`.
-
- * - to_world
-   - |transform|
-   - From the shape's own coordinates, metres with z up, to the world's: a rotation and a shift. (Default: none)
-
- * - (nested plugin)
-   - |bsdf|
-   - Without one the shape makes its own :monosp:`prob_water`. One of that type takes the sea from the shape, also inside of
-     another, such as :monosp:`twosided`; any other stays as it is.
-
- * - vertex_footprint, vertex_whitecaps
-   - |float|
-   - At every vertex, D in m and the probability of a whitecap (where the wind raises any).
-   - |exposed|
-
-One realised sea as a triangle mesh. Cells and with them D grow with the distance: what the mesh cannot show is facets in
-the BSDF, and no wave ends at a line. The shading frame's s is the shape's +x everywhere. In a shapegroup its instances must
-not be transformed: Mitsuba interpolates vertex attributes in the wrong place there.
-
-.. tabs::
-    .. code-tab:: xml
-        :name: prob-water-surface
-
-        <shape type="prob_water_surface">
-            <float name="wind_speed" value="7"/>
-            <float name="radius" value="5000"/>
-        </shape>
-
-    .. code-tab:: python
-
-        'type': 'prob_water_surface',
-        'wind_speed': 7,
-        'radius': 5000
-*/
+// Parameters and examples: mitsuba-plugin/docs/prob_water_surface.rst.
 template <typename Float, typename Spectrum>
 class ProbWaterSurface final : public Mesh<Float, Spectrum> {
 public:
@@ -108,7 +25,6 @@ public:
     using typename Base::FloatStorage;
 
     ProbWaterSurface(const Properties &props) : Base(props), m_mesh(configure(props)), m_time(m_mesh->time()) {
-        check_rigid(m_to_world.scalar());
         for (const char *flag : { "flip_normals", "face_normals" })
             if (props.get<bool>(flag, false))
                 Throw("prob_water_surface: %s = true has no meaning here: normals are the waves'", flag);
@@ -169,37 +85,21 @@ private:
         }
     }
 
-    /// Waves stay as steep as they are, and z stays up for them.
-    static void check_rigid(const ScalarAffineTransform4f &to_world) {
-        ScalarVector3f x = to_world * ScalarVector3f(1.f, 0.f, 0.f), y = to_world * ScalarVector3f(0.f, 1.f, 0.f),
-                       z = to_world * ScalarVector3f(0.f, 0.f, 1.f);
-        ScalarPoint3f o = to_world * ScalarPoint3f(0.f);
-        auto near = [](ScalarFloat a, ScalarFloat b) { return std::abs(a - b) < 1e-4f; };
-        bool rigid = near(dr::norm(x), 1.f) && near(dr::norm(y), 1.f) && near(dr::dot(x, y), 0.f) &&
-                     near(dr::norm(dr::cross(x, y) - z), 0.f) && std::isfinite(o.x() + o.y() + o.z());
-        if (!rigid)
-            Throw("prob_water_surface: to_world scales, shears, mirrors or is not finite: allowed are rotations and shifts");
-    }
-
     static FloatStorage load(const rust::Vec<float> &values) {
         return dr::load<FloatStorage>(values.data(), values.size());
     }
 
-    /// Calls with the name and the value of every word that the scene gives.
-    template <typename Word> static void words(const Properties &props, Word word) {
-        prob_water::words(props, prob_water::mesh_vocabulary(), word, [](const std::string &name) {
-            Throw("prob_water_surface: %s is an object or an array: allowed is a plain number, true or false, or a word", name);
-        });
-    }
-
-    static rust::Box<prob_water::SeaMesh> configure(const Properties &props) {
+    rust::Box<prob_water::SeaMesh> configure(const Properties &props) const {
         return refuse([&] {
             rust::Box<prob_water::MeshOptions> options = prob_water::mesh_options();
-            words(props, prob_water::set_word(*options));
+            prob_water::set_words(props, prob_water::mesh_vocabulary(), *options, [](const std::string &name) {
+                Throw("prob_water_surface: %s is an object or an array: allowed is a plain number, true or false, or a word", name);
+            });
             auto center = props.get<ScalarPoint3f>("center", ScalarPoint3f(0.f));
-            if (center.z() != 0.f)
-                Throw("prob_water_surface: center has z = %s: allowed is 0", center.z());
-            options->set_center(center.x(), center.y());
+            options->set_center({ center.x(), center.y(), center.z() });
+            auto m = m_to_world.scalar().matrix;
+            options->set_to_world({ m(0, 0), m(0, 1), m(0, 2), m(0, 3), m(1, 0), m(1, 1), m(1, 2), m(1, 3),
+                                    m(2, 0), m(2, 1), m(2, 2), m(2, 3) });
             return options->configure();
         });
     }
@@ -207,15 +107,6 @@ private:
     /// Takes the waves as they are now; whether there are whitecaps.
     bool fill() {
         prob_water::Vertices v = m_mesh->vertices();
-        ScalarAffineTransform4f to_world = m_to_world.scalar();
-        for (size_t i = 0; i < v.positions.size(); i += 3) {
-            auto p = to_world * ScalarPoint3f(v.positions[i], v.positions[i + 1], v.positions[i + 2]);
-            auto n = dr::normalize(to_world * ScalarNormal3f(v.normals[i], v.normals[i + 1], v.normals[i + 2]));
-            for (size_t axis = 0; axis < 3; ++axis) {
-                v.positions[i + axis] = (float) p[axis];
-                v.normals[i + axis] = (float) n[axis];
-            }
-        }
         m_vertex_positions = load(v.positions);
         m_vertex_normals = load(v.normals);
         if (v.whitecaps.empty())
@@ -235,17 +126,12 @@ private:
         if (!nested)
             m_bsdf = PluginManager::instance()->create_object<BSDF>(Properties("prob_water"));
 
-        Properties sea("prob_water");
-        sea.set("components", (int64_t) m_mesh->components());
-        words(props, [&](const std::string &name, const auto &value) {
-            if (name != "footprint" && name != "whitecaps" && name != "components")
-                sea.set(name, value);
-        });
-        sea.set("footprint", attribute("vertex_footprint"));
+        Properties sea(props);
+        sea.set("components", (int64_t) m_mesh->components(), false);
+        sea.set("footprint", attribute("vertex_footprint"), false);
+        sea.set("whitecaps", false, false);
         if (whitecaps)
-            sea.set("whitecaps", attribute("vertex_whitecaps"));
-        else
-            sea.set("whitecaps", false);
+            sea.set("whitecaps", attribute("vertex_whitecaps"), false);
         for (prob_water::TakesSea *takes : prob_water::takers(m_bsdf.get()))
             takes->take_sea(sea);
     }

@@ -21,11 +21,15 @@ template <typename A, typename B> A smaller(const A &a, const B &b) {
     return drjit::select(a < c, a, c);
 }
 
-/// Which of the two lobes take part.
-struct Parts {
-    bool facets, whitecaps;
-    uint32_t bits() const { return (facets ? 1u : 0u) | (whitecaps ? 2u : 0u); }
-    bool none() const { return !facets && !whitecaps; }
+/// What a program is given.
+template <typename Float> struct Inputs {
+    Float numbers[(size_t) Input::Count];
+
+    void set(Input input, const Float &x) { numbers[(size_t) input] = x; }
+    void set(Input first, const mitsuba::Vector<Float, 3> &v) {
+        for (size_t k = 0; k < 3; ++k)
+            numbers[(size_t) first + k] = v[k];
+    }
 };
 
 template <typename Float_> struct Replay {
@@ -36,16 +40,6 @@ template <typename Float_> struct Replay {
     using Buffer = mitsuba::DynamicBuffer<Float>;
     using HalfBuffer = mitsuba::DynamicBuffer<drjit::float16_array_t<Float>>;
     using Packet = drjit::Array<Float, 8>;
-    using Vector3f = mitsuba::Vector<Float, 3>;
-
-    /// As the core's kernels.rs has them.
-    enum Program { Eval, Weight, Pdf, Draw, PerParts };
-
-    /// What a program is given, in the order of the core's `kernels::inputs`.
-    struct Inputs {
-        Vector3f source = 0.f, observer = 0.f, random = 0.f, normal = 0.f;
-        Float footprint = 0.f, whitecap = 0.f, cosine = 0.f;
-    };
 
     /// Numbers are data, so that a change does not compile new kernels; decisions were made while recording.
     std::vector<Float> coefficients;
@@ -75,35 +69,12 @@ template <typename Float_> struct Replay {
 
     DRJIT_STRUCT(Replay, coefficients, tables, half_tables)
 
-    /// The results of a program of some parts.
-    std::vector<Float> run(Program program, Parts parts, const Inputs &inputs) const {
-        return run(programs[(parts.bits() - 1) * PerParts + program], inputs);
-    }
-
-    /// rho of the cosine among the inputs.
-    Float reflectance(const Float &cosine) const {
-        Inputs inputs;
-        inputs.cosine = cosine;
-        return run(programs[3 * PerParts], inputs)[0];
-    }
-
-    /// Sine and cosine of so many turns, from 0 to 1.
-    std::pair<Float, Float> sincos_turns(const Float &turns) const {
-        Inputs inputs;
-        inputs.cosine = turns;
-        auto both = run(programs[3 * PerParts + 1], inputs);
-        return { both[0], both[1] };
+    /// The results of a kernel, for some parts (1 facets, 2 whitecaps).
+    std::vector<Float> run(Kernel kernel, uint32_t parts, const Inputs<Float> &inputs) const {
+        return run(programs[prob_water::program(kernel, parts)], inputs);
     }
 
 private:
-    static Float input(const Inputs &in, uint32_t k) {
-        if (k < 12) {
-            const Vector3f *vectors[] = { &in.source, &in.observer, &in.random, &in.normal };
-            return (*vectors[k / 3])[k % 3];
-        }
-        return k == 12 ? in.footprint : k == 13 ? in.whitecap : in.cosine;
-    }
-
     template <size_t N, typename Source> static Packet gather(const Source &table, const UInt32 &at, const Mask &active) {
         drjit::Array<Float, N> found(drjit::gather<drjit::Array<Source, N>>(table, at, active));
         Packet packet = 0.f;
@@ -123,7 +94,7 @@ private:
         return drjit::reinterpret_array<Float>(Int(drjit::fmadd(n, 0x1p23f, 127.f * 0x1p23f)));
     }
 
-    std::vector<Float> run(const prob_water::Program &program, const Inputs &inputs) const {
+    std::vector<Float> run(const prob_water::Program &program, const Inputs<Float> &inputs) const {
         namespace dr = drjit;
         using Op = prob_water::Operation;
         size_t count = program.instructions.size() / 4;
@@ -136,7 +107,7 @@ private:
             switch ((Op) word[0]) {
                 case Op::Constant: x[k] = dr::reinterpret_array<float>(a); break;
                 case Op::Coefficient: x[k] = coefficients[a]; break;
-                case Op::Input: x[k] = input(inputs, a); break;
+                case Op::Input: x[k] = inputs.numbers[a]; break;
                 case Op::Add: x[k] = x[a] + x[b]; break;
                 case Op::Subtract: x[k] = x[a] - x[b]; break;
                 case Op::Multiply: x[k] = x[a] * x[b]; break;

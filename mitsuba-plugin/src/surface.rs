@@ -1,5 +1,6 @@
 //! What the shim of the shape calls: a sea's mesh over a cxx bridge.
 
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use prob_water::vocabulary::{Builder, ENTRIES, Value, whole};
 use prob_water::{Error, Layout, Mesh, Surface};
 
@@ -12,7 +13,7 @@ mod ffi {
         faces: Vec<u32>,
     }
 
-    /// `prob_water::mesh::Vertices`.
+    /// `prob_water::mesh::Vertices`, in the world.
     struct Vertices {
         positions: Vec<f32>,
         normals: Vec<f32>,
@@ -26,7 +27,9 @@ mod ffi {
         fn set_number(self: &mut MeshOptions, name: &str, value: f64) -> Result<()>;
         fn set_flag(self: &mut MeshOptions, name: &str, value: bool) -> Result<()>;
         fn set_text(self: &mut MeshOptions, name: &str, value: &str) -> Result<()>;
-        fn set_center(self: &mut MeshOptions, x: f64, y: f64);
+        fn set_center(self: &mut MeshOptions, center: [f64; 3]) -> Result<()>;
+        /// From the shape's own coordinates to the world's: the upper three rows of the matrix.
+        fn set_to_world(self: &mut MeshOptions, rows: [f64; 12]) -> Result<()>;
         fn configure(self: &MeshOptions) -> Result<Box<SeaMesh>>;
         /// Every name that the above know.
         fn mesh_vocabulary() -> Vec<String>;
@@ -46,6 +49,8 @@ mod ffi {
 
 /// Numbers beside the vocabulary.
 const LAYOUT: [&str; 5] = ["radius", "azimuth", "opening", "vertices", "memory"];
+/// Of the scalar products of what `to_world` makes of the axes.
+const TOLERANCE: f64 = 1e-4;
 /// So many components are a sea by themselves.
 const COMPONENTS: f64 = 512.0;
 
@@ -53,12 +58,13 @@ const COMPONENTS: f64 = 512.0;
 struct MeshOptions {
     sea: Builder,
     layout: Layout,
+    to_world: DAffine3,
 }
 
 fn mesh_options() -> Box<MeshOptions> {
     let mut sea = Builder::on(Surface::Instance);
     sea.set("components", &Value::Number(COMPONENTS)).expect("is in range");
-    Box::new(MeshOptions { sea, layout: Layout::default() })
+    Box::new(MeshOptions { sea, layout: Layout::default(), to_world: DAffine3::IDENTITY })
 }
 
 fn mesh_vocabulary() -> Vec<String> {
@@ -97,48 +103,74 @@ impl MeshOptions {
         self.set(name, Value::Text(value.into()))
     }
 
-    fn set_center(&mut self, x: f64, y: f64) {
+    fn set_center(&mut self, [x, y, z]: [f64; 3]) -> Result<(), String> {
+        if z != 0.0 {
+            return Err(format!("center has z = {z}: allowed is 0"));
+        }
         self.layout.center = [x, y];
+        Ok(())
+    }
+
+    /// Waves stay as steep as they are, and z stays up for them.
+    fn set_to_world(&mut self, rows: [f64; 12]) -> Result<(), String> {
+        let column = |k: usize| DVec3::new(rows[k], rows[4 + k], rows[8 + k]);
+        let matrix = DMat3::from_cols(column(0), column(1), column(2));
+        let is_rotation = (matrix.transpose() * matrix).abs_diff_eq(DMat3::IDENTITY, TOLERANCE)
+            && matrix.determinant() > 0.0;
+        if !is_rotation || !column(3).is_finite() {
+            let allowed = "allowed are rotations and shifts";
+            return Err(format!("to_world scales, shears, mirrors or is not finite: {allowed}"));
+        }
+        self.to_world = DAffine3 { matrix3: matrix, translation: column(3) };
+        Ok(())
     }
 
     fn configure(&self) -> Result<Box<SeaMesh>, Error> {
         let water = self.sea.parameters()?.configure()?;
-        Ok(Box::new(SeaMesh(Mesh::new(&water, &self.layout)?)))
+        Ok(Box::new(SeaMesh { mesh: Mesh::new(&water, &self.layout)?, to_world: self.to_world }))
     }
 }
 
 /// A sea whose mesh fits into its budgets.
-struct SeaMesh(Mesh);
+struct SeaMesh {
+    mesh: Mesh,
+    to_world: DAffine3,
+}
 
 impl SeaMesh {
     fn time(&self) -> f64 {
-        self.0.water.parameters.time
+        self.mesh.water.parameters.time
     }
 
     fn components(&self) -> u32 {
-        self.0.water.parameters.components
+        self.mesh.water.parameters.components
     }
 
     fn level(&self) -> ffi::Level {
-        let level = self.0.level();
+        let level = self.mesh.level();
         ffi::Level { texcoords: level.texcoords, footprints: level.footprints, faces: level.faces }
     }
 
     fn set_time(&mut self, time: f64) -> Result<(), Error> {
-        self.0.water = prob_water::Parameters { time, ..self.0.water.parameters }.configure()?;
+        self.mesh.water = prob_water::Parameters { time, ..self.mesh.water.parameters }.configure()?;
         Ok(())
     }
 
     fn vertices(&self) -> ffi::Vertices {
-        let vertices = self.0.vertices(self.time());
+        let vertices = self.mesh.vertices(self.time());
+        let map = |values: &[f32], transform: &dyn Fn(DVec3) -> DVec3| {
+            let (vectors, _) = values.as_chunks();
+            let mapped = vectors.iter().map(|v| transform(Vec3::from_array(*v).as_dvec3()).as_vec3());
+            mapped.flat_map(|v| v.to_array()).collect()
+        };
         ffi::Vertices {
-            positions: vertices.positions,
-            normals: vertices.normals,
+            positions: map(&vertices.positions, &|p| self.to_world.transform_point3(p)),
+            normals: map(&vertices.normals, &|n| self.to_world.transform_vector3(n).normalize()),
             whitecaps: vertices.whitecaps,
         }
     }
 
     fn describe(&self) -> String {
-        self.0.to_string()
+        self.mesh.to_string()
     }
 }

@@ -11,7 +11,8 @@ use std::fs;
 const MARKDOWN: [&str; 5] =
     ["README.md", "docs/guide-command.md", "docs/guide-mitsuba.md", "docs/guide-rust.md", "docs/guide-c.md"];
 const RUST: &str = "rust-core/docs/parameters.md";
-const PLUGIN: &str = "mitsuba-plugin/docs/prob_water.rst";
+const PLUGINS: [&str; 2] =
+    ["mitsuba-plugin/docs/prob_water.rst", "mitsuba-plugin/docs/prob_water_surface.rst"];
 
 /// A row of the vocabulary.
 struct Row {
@@ -39,9 +40,11 @@ pub fn parameters(check: bool) -> Result<()> {
     if put(RUST, &found, &format!("{generated}{}", table("all", &rows)?), check)? {
         stale.push(RUST);
     }
-    let text = read(PLUGIN)?;
-    if put(PLUGIN, &text, &plugin(&text, &rows)?, check)? {
-        stale.push(PLUGIN);
+    for file in PLUGINS {
+        let text = read(file)?;
+        if put(file, &text, &plugin(&text, &rows).with_context(|| file.to_owned())?, check)? {
+            stale.push(file);
+        }
     }
     match (check, stale.is_empty()) {
         (true, false) => bail!("{} is stale: run `cargo xtask parameters`", stale.join(", ")),
@@ -134,21 +137,27 @@ fn table(style: &str, rows: &[Row]) -> Result<String> {
     Ok(text)
 }
 
-/// The plugin's documentation with the list of the vocabulary filled anew. Its line `.. exposed:` names what `traverse` exposes.
+/// A plugin's documentation with the list of the vocabulary filled anew. Its line `.. exposed:` names what `traverse` exposes,
+/// a line `.. without:` what it does not take.
 fn plugin(text: &str, rows: &[Row]) -> Result<String> {
     const BEGIN: &str = ".. parameters\n";
     const END: &str = ".. parameters end\n";
-    let missing = |what: &str| format!("{PLUGIN} has no line `{what}`");
-    let exposed = text.lines().find_map(|line| line.trim_start().strip_prefix(".. exposed: "));
-    let exposed: Vec<_> = exposed.with_context(|| missing(".. exposed:"))?.split(", ").collect();
-    if let Some(name) = exposed.iter().find(|name| rows.iter().all(|row| row.name != **name)) {
-        bail!("{PLUGIN}: {name} is exposed, but no parameter");
+    let missing = |line: &str| format!("has no line `{line}`");
+    let names = |mark: &str| {
+        let line = text.lines().find_map(|line| line.trim_start().strip_prefix(mark));
+        line.map(|names| names.trim().split(", ").collect::<Vec<_>>())
+    };
+    let exposed = names(".. exposed:").with_context(|| missing(".. exposed:"))?;
+    let without = names(".. without:").unwrap_or_default();
+    if let Some(name) = exposed.iter().chain(&without).find(|name| rows.iter().all(|row| row.name != **name))
+    {
+        bail!("{name} is no parameter");
     }
     let (before, rest) = text.split_once(BEGIN).with_context(|| missing(BEGIN.trim_end()))?;
     let (_, after) = rest.split_once(END).with_context(|| missing(END.trim_end()))?;
     // The directive stands within the marks: a comment of Sphinx would take an indented list that follows.
     let mut list = String::from("\n.. pluginparameters::\n");
-    for row in rows {
+    for row in rows.iter().filter(|row| !without.contains(&row.name.as_str())) {
         let kind = match row.kind.as_str() {
             "number" => "|float|",
             "whole number" => "|int|",

@@ -20,7 +20,7 @@ pub fn instance(draw: &mut Draw, tally: &mut Tally) {
     for _ in 0..1024 {
         let [i, o] = pair(draw);
         let place = place(draw);
-        let (f, spot) = (lobe.eval(i, o, place), lobe.spot(place, None));
+        let (f, spot) = (lobe.eval(i, o, place), lobe.local(place, None));
         let length: f64 = spot.normal.iter().map(|x| x * x).sum();
         let whole = fine(f)
             && (length - 1.0).abs() < 1e-12

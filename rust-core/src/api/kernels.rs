@@ -4,28 +4,95 @@ use crate::brdf::{Lobe, Parts};
 use crate::empirical::FineGrid;
 use crate::numeric::Real;
 use crate::numeric::real::Extended;
-use crate::render::FacetTable;
 use crate::render::ensemble_lobe::MeanLobe;
+use crate::render::{FacetTable, WaveTerm, WhitecapOnset};
 use crate::simd::recorded::{Program, Recording, Traced};
+
+/// What a program gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kernel {
+    /// f times the cosine among the inputs.
+    Eval,
+    /// The same where its last digits do not matter.
+    Weight,
+    /// The density of draws, 1/sr.
+    Pdf,
+    /// A drawn direction, and 1 where it comes from the whitecaps.
+    Draw,
+    /// The share of draws for the light from below, by its reflectance.
+    WaterLeavingShare,
+    /// `f cos(theta_o)` of the light from below for a reflectance of 1, and the density of draws by cosine.
+    WaterLeaving,
+    /// Diffuse reflectance of the whitecaps, and the share of water without any.
+    Diffuse,
+    /// The sums over the waves with another one.
+    Wave,
+    /// The wave normal and the probability of a whitecap that follow.
+    Normal,
+}
+
+impl Kernel {
+    /// Those that there are for facets alone, whitecaps alone and both.
+    const OF_PARTS: [Self; 5] = [Self::Eval, Self::Weight, Self::Pdf, Self::Draw, Self::WaterLeavingShare];
+
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Eval,
+        Self::Weight,
+        Self::Pdf,
+        Self::Draw,
+        Self::WaterLeavingShare,
+        Self::WaterLeaving,
+        Self::Diffuse,
+        Self::Wave,
+        Self::Normal,
+    ];
+
+    /// The number of its program among a sea's, for the parts that take part (of those [`Kernel::Wave`] knows nothing).
+    ///
+    /// # Panics
+    /// Where no part does and the kernel is one of parts.
+    pub fn program(self, parts: Parts) -> usize {
+        let count = Self::OF_PARTS.len();
+        if (self as usize) < count {
+            let nth = PARTS.iter().position(|known| *known == parts).expect("a part takes part");
+            nth * count + self as usize
+        } else {
+            PARTS.len() * count + self as usize - count
+        }
+    }
+}
+
+const PARTS: [Parts; 3] = [
+    Parts { facets: true, whitecaps: false },
+    Parts { facets: false, whitecaps: true },
+    Parts { facets: true, whitecaps: true },
+];
 
 /// What the inputs of a program are, by their numbers.
 pub mod inputs {
     /// Unit vector to the source; where the order matters, to the light.
-    pub const SOURCE: usize = 0;
+    pub const SOURCE: u32 = 0;
     /// Unit vector to the observer.
-    pub const OBSERVER: usize = 3;
+    pub const OBSERVER: u32 = 3;
     /// Three uniform numbers of [0, 1).
-    pub const RANDOM: usize = 6;
+    pub const RANDOM: u32 = 6;
     /// The wave normal.
-    pub const NORMAL: usize = 9;
-    /// The footprint, m.
-    pub const FOOTPRINT: usize = 12;
+    pub const NORMAL: u32 = 9;
+    /// The footprint, m; of a wave its log2.
+    pub const FOOTPRINT: u32 = 12;
     /// The probability of a whitecap.
-    pub const WHITECAP: usize = 13;
-    /// The cosine that f is multiplied by; of a reflectance that of its angle.
-    pub const COSINE: usize = 14;
+    pub const WHITECAP: u32 = 13;
+    /// The cosine that f is multiplied by.
+    pub const COSINE: u32 = 14;
+    /// The reflectance of the water body.
+    pub const REFLECTANCE: u32 = 15;
+    /// A wave: turns, turns per m along x and y, amplitude in m, omega^2 in 1/s^2, log2(k/pi).
+    pub const WAVE: u32 = 16;
+    /// Sums over the waves, of [`WaveTerm::add_to`].
+    pub const SUMS: u32 = 22;
     /// How many.
-    pub const COUNT: usize = 15;
+    pub const COUNT: u32 = 25;
 }
 
 /// What differs from place to place.
@@ -33,7 +100,9 @@ pub mod inputs {
 pub struct Places<'a> {
     /// The normal is a wave's.
     pub normal: bool,
-    /// So is the probability of a whitecap.
+    /// Whitecaps come with it.
+    pub onset: Option<WhitecapOnset<f64>>,
+    /// The probability of a whitecap is an input.
     pub whitecap: bool,
     /// Facets for a footprint.
     pub footprint: Option<&'a FacetTable<f64>>,
@@ -55,9 +124,7 @@ pub enum Mean<'a> {
 pub struct Kernels {
     /// Coefficients and tables.
     pub recording: Recording,
-    /// For facets alone, whitecaps alone and both: f times a cosine; the same where its last digits do not matter; the density of
-    /// draws; and a direction with 1 where it comes from the whitecaps. Last rho
-    /// (Eqs. 61-63) and sine and cosine of so many turns, both of the last input.
+    /// By [`Kernel::program`].
     pub programs: Vec<Program>,
 }
 
@@ -66,24 +133,34 @@ impl Kernels {
     pub fn new(lobe: &Lobe<f64>, mean: Mean, places: Places) -> Self {
         let mut recording = Recording::default();
         let mut programs = Vec::new();
-        let mut record = |program: &mut dyn FnMut(&Sea, &[Traced]) -> Vec<Traced>| {
-            let program = recording.record(inputs::COUNT, |x| program(&Sea::new(lobe, mean, places, x), x));
-            programs.push(program);
+        let mut record = |kernel: Kernel, parts: Parts| {
+            programs.push(recording.record(inputs::COUNT, |x| {
+                Sea::new(lobe, mean, places, Inputs(x)).run(kernel, parts, Inputs(x))
+            }));
         };
-        for parts in [(true, false), (false, true), (true, true)] {
-            let parts = Parts { facets: parts.0, whitecaps: parts.1 };
-            for last_digits in [true, false] {
-                record(&mut |sea, x| vec![sea.eval(x, parts, last_digits)]);
+        for parts in PARTS {
+            for kernel in Kernel::OF_PARTS {
+                record(kernel, parts);
             }
-            record(&mut |sea, x| vec![sea.pdf(x, parts)]);
-            record(&mut |sea, x| sea.draw(x, parts));
         }
-        record(&mut |sea, x| vec![sea.lobe.facets.reflectance.eval(x[inputs::COSINE])]);
-        record(&mut |_, x| {
-            let (sin, cos) = x[inputs::COSINE].sin_cos_turns();
-            vec![sin, cos]
-        });
+        for kernel in Kernel::ALL.into_iter().skip(Kernel::OF_PARTS.len()) {
+            record(kernel, Parts::ALL);
+        }
         Self { recording, programs }
+    }
+}
+
+/// The inputs of a program.
+#[derive(Clone, Copy)]
+struct Inputs<'a>(&'a [Traced]);
+
+impl Inputs<'_> {
+    fn number(&self, at: u32) -> Traced {
+        self.0[at as usize]
+    }
+
+    fn vector(&self, first: u32) -> [Traced; 3] {
+        [self.number(first), self.number(first + 1), self.number(first + 2)]
     }
 }
 
@@ -99,14 +176,12 @@ struct Sea {
     lobe: Lobe<Traced>,
     mean: TracedMean,
     normal: Option<[Traced; 3]>,
-}
-
-fn vector(x: &[Traced], first: usize) -> [Traced; 3] {
-    [x[first], x[first + 1], x[first + 2]]
+    onset: Option<WhitecapOnset<Traced>>,
+    log2_footprint: Option<Traced>,
 }
 
 impl Sea {
-    fn new(lobe: &Lobe<f64>, mean: Mean, places: Places, x: &[Traced]) -> Self {
+    fn new(lobe: &Lobe<f64>, mean: Mean, places: Places, x: Inputs) -> Self {
         let mut lobe: Lobe<Traced> = lobe.cast();
         // Means need no digits that turning takes: where the wind comes from is data.
         let mean = match mean {
@@ -125,18 +200,65 @@ impl Sea {
             }
         };
         if let Some(table) = places.footprint {
-            table.cast().set(&mut lobe.facets, x[inputs::FOOTPRINT]);
+            table.cast().set(&mut lobe.facets, x.number(inputs::FOOTPRINT));
         }
         if places.whitecap {
-            lobe.whitecap_fraction = x[inputs::WHITECAP];
-            lobe.smooth_fraction = Traced::of(1.0) - x[inputs::WHITECAP];
+            lobe.whitecap_fraction = x.number(inputs::WHITECAP);
+            lobe.smooth_fraction = Traced::of(1.0) - x.number(inputs::WHITECAP);
         }
-        Self { lobe, mean, normal: places.normal.then(|| vector(x, inputs::NORMAL)) }
+        Self {
+            lobe,
+            mean,
+            normal: places.normal.then(|| x.vector(inputs::NORMAL)),
+            onset: places.onset.map(|onset| onset.cast()),
+            log2_footprint: places.footprint.map(|_| x.number(inputs::FOOTPRINT)),
+        }
     }
 
-    fn eval(&self, x: &[Traced], parts: Parts, last_digits: bool) -> Traced {
-        let (i, o) = (vector(x, inputs::SOURCE), vector(x, inputs::OBSERVER));
-        let cosine = x[inputs::COSINE];
+    fn run(&self, kernel: Kernel, parts: Parts, x: Inputs) -> Vec<Traced> {
+        let (i, o) = (x.vector(inputs::SOURCE), x.vector(inputs::OBSERVER));
+        match kernel {
+            Kernel::Eval => vec![self.eval(i, o, x.number(inputs::COSINE), parts, true)],
+            Kernel::Weight => vec![self.eval(i, o, x.number(inputs::COSINE), parts, false)],
+            Kernel::Pdf => vec![self.pdf(i, o, parts)],
+            Kernel::Draw => {
+                let (direction, whitecap) = self.lobe.draw(i, self.normal, x.vector(inputs::RANDOM), parts);
+                let whitecap = Traced::select(whitecap, Traced::of(1.0), Traced::of(0.0));
+                vec![direction[0], direction[1], direction[2], whitecap]
+            }
+            Kernel::WaterLeavingShare => {
+                vec![self.lobe.water_leaving_share(i, x.number(inputs::REFLECTANCE), parts)]
+            }
+            Kernel::WaterLeaving => self.lobe.water_leaving(i, o).to_vec(),
+            Kernel::Diffuse => vec![self.lobe.whitecap_albedo(), self.lobe.smooth_fraction],
+            Kernel::Wave => {
+                let wave = |k| x.number(inputs::WAVE + k);
+                let wave = WaveTerm {
+                    turns: wave(0),
+                    wave_number: [wave(1), wave(2)],
+                    amplitude: wave(3),
+                    frequency_squared: wave(4),
+                    log2_fading: wave(5),
+                };
+                wave.add_to(x.vector(inputs::SUMS), self.log2_footprint).to_vec()
+            }
+            Kernel::Normal => {
+                let [down_x, down_y, fall] = x.vector(inputs::SUMS);
+                let z = down_x.mul_add(down_x, down_y.mul_add(down_y, Traced::of(1.0))).rsqrt();
+                let whitecap = self.onset.map_or(Traced::of(0.0), |onset| onset.probability(-fall));
+                vec![down_x * z, down_y * z, z, whitecap]
+            }
+        }
+    }
+
+    fn eval(
+        &self,
+        i: [Traced; 3],
+        o: [Traced; 3],
+        cosine: Traced,
+        parts: Parts,
+        last_digits: bool,
+    ) -> Traced {
         match &self.mean {
             TracedMean::Ensemble(mean) => mean.eval(i, o, parts) * cosine,
             TracedMean::Empirical(grid) => grid.eval(i, o, parts) * cosine,
@@ -161,8 +283,8 @@ impl Sea {
         }
     }
 
-    fn pdf(&self, x: &[Traced], parts: Parts) -> Traced {
-        let (i, o, zero) = (vector(x, inputs::SOURCE), vector(x, inputs::OBSERVER), Traced::of(0.0));
+    fn pdf(&self, i: [Traced; 3], o: [Traced; 3], parts: Parts) -> Traced {
+        let zero = Traced::of(0.0);
         if !matches!(self.mean, TracedMean::Facets) {
             return self.lobe.pdf_in::<<Traced as Real>::Plain>(i, o, None, parts);
         }
@@ -171,12 +293,5 @@ impl Sea {
             return pdf;
         }
         Traced::select(Traced::lt(zero, i[2]) & Traced::lt(zero, o[2]), pdf, zero)
-    }
-
-    fn draw(&self, x: &[Traced], parts: Parts) -> Vec<Traced> {
-        let (i, u) = (vector(x, inputs::SOURCE), vector(x, inputs::RANDOM));
-        let (direction, whitecap) = self.lobe.draw(i, self.normal, u, parts);
-        let whitecap = Traced::select(whitecap, Traced::of(1.0), Traced::of(0.0));
-        vec![direction[0], direction[1], direction[2], whitecap]
     }
 }

@@ -1,11 +1,12 @@
-//! The BRDF at a point of the surface: facets, their slopes, reflectance and shadowing, the mixture with whitecaps, and
-//! draws from it (Eqs. 56-79).
+//! The BRDF at a point of the surface: facets, their slopes, reflectance and shadowing, the mixture with whitecaps, draws
+//! from it (Eqs. 56-79), and light from below.
 
 pub mod fresnel;
 pub(crate) mod lobe;
 pub mod sampling;
 pub mod shadowing;
 pub mod slopes;
+mod water_leaving;
 
 pub use fresnel::{Fresnel, Reflectance};
 pub use lobe::{Facets, Lobe, Parts, WindAxes, up};

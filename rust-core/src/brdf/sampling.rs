@@ -211,7 +211,7 @@ impl<T: Real> Lobe<T> {
     fn albedos(&self, cos: T) -> [T; 2] {
         let rho = T::from_density(self.facets.reflectance.schlick(cos.to_density()));
         let facets = self.smooth_fraction * (rho + T::of(FACET_ALBEDO_FLOOR));
-        [facets, T::of(PI) * self.whitecap_brdf * self.whitecap_fraction]
+        [facets, self.whitecap_albedo()]
     }
 
     /// Density of the observer's direction `o` among draws for the source `i`, 1/sr.

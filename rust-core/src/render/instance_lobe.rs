@@ -6,8 +6,10 @@ use crate::config::Water;
 use crate::error::Error;
 use crate::numeric::real::Extended;
 use crate::numeric::{Real, Vec3};
+use crate::sea::whitecap;
 use crate::statistics::Ensemble;
 use crate::surface::{Component, Surface, Waves};
+use std::f64::consts::{PI, TAU};
 
 /// One drawn sea at one time, as the normals and whitecaps of a level surface.
 #[derive(Debug, Clone)]
@@ -19,7 +21,7 @@ pub struct InstanceLobe {
 
 /// The sea at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spot {
+pub struct LocalSea {
     /// The wave normal.
     pub normal: [f64; 3],
     /// Probability of a whitecap (Eqs. 53-54).
@@ -57,13 +59,24 @@ impl InstanceLobe {
         &self.components
     }
 
+    /// The same for a renderer that sums them itself.
+    pub fn terms(&self) -> impl Iterator<Item = WaveTerm<f64>> {
+        let time = self.water.parameters.time;
+        self.components.iter().map(move |c| WaveTerm::new(c, time))
+    }
+
+    /// Where whitecaps can stand, their onset.
+    pub fn whitecap_onset(&self) -> Option<WhitecapOnset<f64>> {
+        self.has_whitecaps().then(|| WhitecapOnset::new(self.water.wind.friction_velocity))
+    }
+
     /// The sea at a place in m. With a footprint in m the waves too short for it are left to the facets.
-    pub fn spot(&self, place: [f64; 2], footprint: Option<f64>) -> Spot {
+    pub fn local(&self, place: [f64; 2], footprint: Option<f64>) -> LocalSea {
         let point = match footprint {
             None => self.surface.point(place),
             Some(footprint) => self.surface.point_within(place, footprint),
         };
-        Spot { normal: point.normal(), whitecap: self.water.whitecap_probability(point.acceleration) }
+        LocalSea { normal: point.normal(), whitecap: self.water.whitecap_probability(point.acceleration) }
     }
 
     /// Whether a whitecap can stand anywhere: none can where all crests together are not steep enough.
@@ -75,9 +88,82 @@ impl InstanceLobe {
     /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon,
     /// not a number where a coordinate is none.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2]) -> f64 {
-        let spot = self.spot(place, None);
-        let lobe = self.water.lobe.with_whitecaps(spot.whitecap);
-        lobe.on_wave(i, o, spot.normal, Parts::ALL)
+        let local = self.local(place, None);
+        let lobe = self.water.lobe.with_whitecaps(local.whitecap);
+        lobe.on_wave(i, o, local.normal, Parts::ALL)
+    }
+}
+
+/// One wave at a time, as a renderer sums it over a place.
+#[derive(Debug, Clone, Copy)]
+pub struct WaveTerm<T> {
+    /// Its phase, turns: of the origin in [`InstanceLobe::terms`], of a place where it is summed.
+    pub turns: T,
+    /// Wave numbers along x and y, turns per m.
+    pub wave_number: [T; 2],
+    /// a, m.
+    pub amplitude: T,
+    /// omega^2, 1/s^2.
+    pub frequency_squared: T,
+    /// log2(k D/pi) for a footprint D of 1 m.
+    pub log2_fading: T,
+}
+
+impl WaveTerm<f64> {
+    fn new(c: &Component, time: f64) -> Self {
+        let (sin, cos) = c.azimuth.sin_cos();
+        let k = c.wave_number / TAU;
+        Self {
+            turns: ((c.phase + c.frequency * time) / TAU).fract(),
+            wave_number: [k * cos, k * sin],
+            amplitude: c.amplitude,
+            frequency_squared: c.frequency * c.frequency,
+            log2_fading: (c.wave_number / PI).log2(),
+        }
+    }
+}
+
+impl<T: Real> WaveTerm<T> {
+    /// Adds the wave to the sums of `a k_x sin`, `a k_y sin` (the negative slopes, Eqs. 39-40) and `a omega^2 cos` (the negative
+    /// vertical acceleration, Eq. 52, m/s^2). With the log2 of a footprint in m its share ([`crate::surface::share`]) alone.
+    pub fn add_to(&self, [x, y, acceleration]: [T; 3], log2_footprint: Option<T>) -> [T; 3] {
+        let (sin, cos) = self.turns.sin_cos_turns();
+        let mut a = self.amplitude;
+        if let Some(log2_footprint) = log2_footprint {
+            let share = T::of(0.5) - (self.log2_fading + log2_footprint);
+            a = a * T::min(T::max(share, T::of(0.0)), T::of(1.0)).sqrt();
+        }
+        let steep = T::of(TAU) * a * sin;
+        let [kx, ky] = self.wave_number;
+        [steep.mul_add(kx, x), steep.mul_add(ky, y), (a * self.frequency_squared).mul_add(cos, acceleration)]
+    }
+}
+
+/// Accelerations between which the probability of a whitecap falls (Eqs. 53-54).
+#[derive(Debug, Clone, Copy)]
+pub struct WhitecapOnset<T> {
+    /// Vertical acceleration above which there is none, m/s^2.
+    none: T,
+    /// The probability's fall per m/s^2.
+    fall: T,
+}
+
+impl WhitecapOnset<f64> {
+    fn new(friction_velocity: f64) -> Self {
+        let [sure, none] = whitecap::onset(friction_velocity).map(|cm| 0.01 * cm);
+        Self { none, fall: 1.0 / (none - sure).max(1e-30) }
+    }
+
+    /// In another number type.
+    pub fn cast<T: Real>(&self) -> WhitecapOnset<T> {
+        WhitecapOnset { none: T::coefficient(self.none), fall: T::coefficient(self.fall) }
+    }
+}
+
+impl<T: Real> WhitecapOnset<T> {
+    /// Probability of a whitecap at a vertical acceleration in m/s^2.
+    pub fn probability(&self, acceleration: T) -> T {
+        T::min(T::max((self.none - acceleration) * self.fall, T::of(0.0)), T::of(1.0))
     }
 }
 

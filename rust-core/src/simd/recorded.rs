@@ -140,14 +140,10 @@ fn push(operation: Operation, operands: [u32; 3]) -> u32 {
 impl Recording {
     /// Records a program of numbers: `inputs` are how many inputs it has, the result its outputs. Coefficients and tables that
     /// it uses are added to the recording; all programs of a recording take the same coefficients in the same order.
-    pub(crate) fn record(
-        &mut self,
-        inputs: usize,
-        program: impl FnOnce(&[Traced]) -> Vec<Traced>,
-    ) -> Program {
+    pub(crate) fn record(&mut self, inputs: u32, program: impl FnOnce(&[Traced]) -> Vec<Traced>) -> Program {
         TAPE.set(Tape { recording: std::mem::take(self), ..Tape::default() });
         let inputs: Vec<_> =
-            (0..inputs as u32).map(|k| Lanes(Recorded::Node(push(Operation::Input, [k, 0, 0])))).collect();
+            (0..inputs).map(|k| Lanes(Recorded::Node(push(Operation::Input, [k, 0, 0])))).collect();
         let outputs = program(&inputs).iter().map(|x| x.0.node()).collect();
         let tape = TAPE.take();
         *self = tape.recording;

@@ -1,0 +1,160 @@
+//! Parameters of a BSDF being collected, and the sea that follows.
+
+use crate::ffi::Number;
+use crate::water::{Varied, Water};
+use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
+use prob_water::{Error, Table};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Numbers that can be changed, where they are set and matter.
+const EXPOSED: [&str; 9] = [
+    "wind_speed",
+    "wind_height",
+    "friction_velocity",
+    "beaufort",
+    "wind_direction",
+    "footprint",
+    "time",
+    "wavelength",
+    "ior",
+];
+/// Of these, on a shape, whose sea is the shape's.
+const EXPOSED_WHEN_LENT: [&str; 2] = ["wavelength", "ior"];
+
+/// Beside the vocabulary.
+const PIXEL_ANGLE: &str = "pixel_angle";
+const TABLE: &str = "table";
+
+type Refused = Box<dyn std::error::Error>;
+
+/// Parameters being collected.
+#[derive(Clone, Default)]
+pub struct Options {
+    sea: Builder,
+    /// With the path it was read from.
+    table: Option<(String, Arc<Table>)>,
+    varied: Varied,
+    whitecap_texture: bool,
+    /// Degrees.
+    pixel_angle: f64,
+    /// Words that the BSDF was given itself.
+    own: Vec<String>,
+    /// Whether a shape lends the sea.
+    lent: bool,
+}
+
+pub fn options() -> Box<Options> {
+    Box::default()
+}
+
+pub fn vocabulary() -> Vec<String> {
+    ENTRIES.iter().map(|e| e.name).chain([PIXEL_ANGLE]).map(String::from).collect()
+}
+
+impl Options {
+    pub fn set_number(&mut self, name: &str, value: f64) -> Result<(), Refused> {
+        self.set(name, Value::Number(value))
+    }
+
+    pub fn set_flag(&mut self, name: &str, value: bool) -> Result<(), Refused> {
+        self.set(name, Value::Flag(value))
+    }
+
+    /// A `table` is read from its path.
+    pub fn set_text(&mut self, name: &str, value: &str) -> Result<(), Refused> {
+        if name == TABLE {
+            self.table = Some((value.into(), Arc::new(Table::open(Path::new(value))?)));
+            return Ok(());
+        }
+        self.set(name, Value::Text(value.into()))
+    }
+
+    pub fn set_object(&mut self, name: &str) -> Result<(), Refused> {
+        self.given(name)?;
+        match name {
+            "footprint" => self.varied = Varied::Texture,
+            "whitecaps" => self.whitecap_texture = true,
+            _ => {
+                let allowed = "a plain number, true or false, or a word";
+                return Err(format!("{name} is an object or an array: allowed is {allowed}").into());
+            }
+        }
+        Ok(())
+    }
+
+    pub fn lend(&mut self) -> Result<(), Refused> {
+        if self.lent {
+            return Err("one BSDF cannot lie on two prob_water_surfaces, each has a sea of its own".into());
+        }
+        if let Some(name) = self.own.iter().find(|name| !OPTICS.contains(&name.as_str())) {
+            return Err(given_twice(name));
+        }
+        self.lent = true;
+        Ok(())
+    }
+
+    fn set(&mut self, name: &str, value: Value) -> Result<(), Refused> {
+        if name == PIXEL_ANGLE {
+            let Value::Number(angle) = value else {
+                let (value, expected) = (value.to_string(), "a number");
+                return Err(Error::WrongType { parameter: PIXEL_ANGLE, value, expected }.into());
+            };
+            self.pixel_angle = angle;
+            return Ok(());
+        }
+        self.given(name)?;
+        if name == "footprint" && matches!(&value, Value::Text(text) if text == "pixel") {
+            self.varied = Varied::Pixel;
+            return Ok(());
+        }
+        Ok(self.sea.set(name, &value)?)
+    }
+
+    /// One sea is described once.
+    fn given(&mut self, name: &str) -> Result<(), Refused> {
+        if !self.lent {
+            self.own.push(name.into());
+        } else if self.own.iter().any(|own| own == name) {
+            return Err(given_twice(name));
+        }
+        Ok(())
+    }
+
+    pub fn configure(&self, traced: bool) -> Result<Box<Water>, Refused> {
+        let angle = self.pixel_angle;
+        let is_pixel = self.varied == Varied::Pixel;
+        if !(0.0..90.0).contains(&angle) || (angle > 0.0 && !is_pixel) {
+            let allowed = "0 to 90 degrees, with footprint = pixel".into();
+            return Err(
+                Error::OutOfRange { parameter: PIXEL_ANGLE, value: angle.to_string(), allowed }.into()
+            );
+        }
+        let mut water = Water::new(&self.sea, self.varied, self.table.clone(), self.whitecap_texture)?;
+        water.pixel_angle = angle.to_radians();
+        water.exposed = if self.lent { &EXPOSED_WHEN_LENT } else { &EXPOSED };
+        if traced && is_pixel && angle == 0.0 {
+            return Err(
+                "footprint = pixel needs pixel_angle here: traced variants have no ray differentials".into(),
+            );
+        }
+        Ok(Box::new(water))
+    }
+
+    pub fn change(&mut self, numbers: &[Number], traced: bool) -> Result<Box<Water>, Refused> {
+        let mut changed = self.clone();
+        let now = self.sea.parameters()?;
+        for Number { name, value } in numbers {
+            if now.get(name) != Some(Value::Number(*value)) {
+                changed.sea.set(name, &Value::Number(*value))?;
+            }
+        }
+        let water = changed.configure(traced)?;
+        *self = changed;
+        Ok(water)
+    }
+}
+
+fn given_twice(name: &str) -> Refused {
+    format!("{name} is given on the BSDF of a prob_water_surface: give it on the shape").into()
+}
