@@ -1,4 +1,4 @@
-"""The page of the fronts: out/bench.html, its pictures beside it."""
+"""The page of the fronts: out/bench.html, its pictures in out/bench/."""
 
 from html import escape
 from pathlib import Path

@@ -1,7 +1,6 @@
 """Run time against error: evaluations, means, rays, meshes and renders.
 
-Run by `cargo xtask bench fronts [--quick] [--docs]`, and as part of `cargo xtask bench`. Writes out/bench.html with its
-pictures in out/bench/, and what was measured into out/bench.json.
+Run by `cargo xtask bench fronts [--quick] [--docs]`, and as part of `cargo xtask bench`; front_page.py shows them.
 """
 
 import json

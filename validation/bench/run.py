@@ -1,10 +1,10 @@
 """Speed: prob_water, Mitsuba's own BSDFs, their peer `ocean_legacy`, and the Rust core, its engagements and its
 empirical model included; and run time against error.
 
-Run by `cargo xtask bench [fronts] [--quick] [--rounds N] [--output FILE] [--docs]`. The traced BSDFs are timed by
-validation.bench.throughput in two processes, one per Python environment, that take turns; the table shows the best
-and the median of all passes. The aims are judged by the best, which other work on the machine disturbs least;
-nothing fails when one is missed.
+Run by `cargo xtask bench [fronts] [--quick] [--rounds N] [--output FILE] [--docs]`. Writes out/bench.json, and out/bench.html
+with its pictures in out/bench/. The traced BSDFs are timed by throughput.py in two processes, one per Python environment,
+that take turns; the table shows the best and the median of all passes. The aims are judged by the best, which other work
+on the machine disturbs least; nothing fails when one is missed.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Calls of the plugin's BSDF in any variant, for its tests: directions, values, draws."""
+"""Calls of the plugin's BSDF in any variant, for its tests: directions, values, draws, operations."""
 
 import drjit as dr
 import numpy as np
