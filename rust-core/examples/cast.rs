@@ -1,4 +1,4 @@
-//! What an exact ray cast costs as the number of waves grows, one thread, as lines of JSON; `validation/bench_surface.py`
+//! What an exact ray cast costs as the number of waves grows, one thread, as lines of JSON; `validation/bench/surface.py`
 //! compares it with a mesh.
 
 use glam::DVec3;

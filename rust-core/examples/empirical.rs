@@ -1,4 +1,4 @@
-//! Speed of the empirical model beside the full one, as lines of JSON; `validation/bench.py` runs it.
+//! Speed of the empirical model beside the full one, as lines of JSON; `validation/bench/run.py` runs it.
 //!
 //! `cargo run --release -p prob-water --example empirical [-- REPEATS]`: every figure is measured `REPEATS` times (5
 //! unless told), all in turn, on one thread.

@@ -1,5 +1,5 @@
 //! What is off costs nothing: the same evaluations with a term, by code that looks at its switch and finds it off, and by
-//! code compiled without it. `validation/bench_off.py` counts their instructions.
+//! code compiled without it. `validation/bench/off.py` counts their instructions.
 //!
 //! `cargo run --release -p prob-water --example off -- CASE with|switched|without COUNT`
 

@@ -1,4 +1,4 @@
-//! Throughput of the core on one thread, of scalars and of lanes, as lines of JSON; `validation/bench.py` runs it.
+//! Throughput of the core on one thread, of scalars and of lanes, as lines of JSON; `validation/bench/run.py` runs it.
 //!
 //! `cargo run --release -p prob-water --example throughput [-- REPEATS]`: every figure is measured
 //! `REPEATS` times (5 unless told), interleaved with the others.

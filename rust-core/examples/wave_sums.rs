@@ -1,4 +1,4 @@
-//! Sums of waves over places, one thread, as lines of JSON; `validation/bench.py` runs it.
+//! Sums of waves over places, one thread, as lines of JSON; `validation/bench/run.py` runs it.
 //!
 //! `cargo run --release -p prob-water --example wave_sums [-- REPEATS]`: components per second, heights, slopes and
 //! accelerations of every place included, all candidates in turn, each `REPEATS` times (5 unless told).
@@ -33,7 +33,7 @@ fn main() {
             (0..PLACES).map(|n| [0.731 * n as f64 % 97.0, 0.419 * n as f64 % 89.0]).collect();
 
         let lanes = WaveSums::new(&sea);
-        // Another way to sum the same waves is one more line here, and `validation/bench_core.py` holds it against its
+        // Another way to sum the same waves is one more line here, and `validation/bench/core.py` holds it against its
         // gate.
         let mut candidates: Vec<Candidate> = vec![
             ("libm".into(), {

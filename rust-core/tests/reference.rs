@@ -117,7 +117,7 @@ fn facets_about_any_normal() {
 
 /// `readings = "as_printed"`: pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand, for both reflectances
 /// and slope measures, level and tilted normals, winds along x and oblique. The rows are those of
-/// `validation/printed_rows.py`, which evaluates the printed equations to 50 digits.
+/// `validation/error_budget/printed_rows.py`, which evaluates the printed equations to 50 digits.
 #[test]
 fn facets_as_printed() {
     let rows = rows("facet_as_printed");

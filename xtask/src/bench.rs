@@ -1,4 +1,4 @@
-//! Measurements: `validation/bench.py` times this plugin and, from their own environment, its peers; the others look at one
+//! Measurements: `validation/bench/run.py` times this plugin and, from their own environment, its peers; the others look at one
 //! question each.
 
 use crate::{build, setup, util};
@@ -10,17 +10,16 @@ pub fn bench(arguments: &[String]) -> Result<()> {
         && topic == "compare"
     {
         setup::setup()?;
-        let script = "validation/bench_compare.py";
-        return util::run(util::command(setup::python()).arg(script).args(rest), "bench compare");
+        return util::run(setup::module("validation.bench.compare").args(rest), "bench compare");
     }
     build::build(&build::default_out())?;
-    let (script, arguments) = match arguments.split_first() {
-        Some((topic, rest)) if topic == "off" => ("validation/bench_off.py", rest),
-        Some((topic, rest)) if topic == "surface" => ("validation/bench_surface.py", rest),
+    let (module, arguments) = match arguments.split_first() {
+        Some((topic, rest)) if topic == "off" => ("validation.bench.off", rest),
+        Some((topic, rest)) if topic == "surface" => ("validation.bench.surface", rest),
         _ => {
             setup::peer()?;
-            ("validation/bench.py", arguments)
+            ("validation.bench.run", arguments)
         }
     };
-    util::run(util::command(setup::python()).arg(script).args(arguments), script)
+    util::run(setup::module(module).args(arguments), module)
 }

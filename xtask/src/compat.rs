@@ -12,8 +12,10 @@ pub fn compat() -> Result<()> {
     for version in OTHERS {
         let python = setup::mitsuba(version)?;
         util::run(
-            util::command(python).args(["validation/compat.py", &built]).env("PYTHONDONTWRITEBYTECODE", "1"),
-            &format!("validation/compat.py with Mitsuba {version}"),
+            util::command(python)
+                .args(["-m", "validation.tests.compat", &built])
+                .env("PYTHONDONTWRITEBYTECODE", "1"),
+            &format!("validation.tests.compat with Mitsuba {version}"),
         )?;
     }
     Ok(())

@@ -25,7 +25,7 @@ const ELSEWHERE: [(usize, &str); 6] = [
 /// Writes the index, or only compares it with the committed one. A number that is mentioned nowhere is an error.
 pub fn equations(check: bool) -> Result<()> {
     let mut sources = Vec::new();
-    collect(&util::root().join(SOURCE), &mut sources)?;
+    collect(&util::root().join(SOURCE), "rs", &mut sources)?;
     sources.sort();
     // Of every equation its files, those first that mention it in their head or most often.
     let mut found: BTreeMap<usize, Vec<(bool, usize, String)>> = BTreeMap::new();
@@ -81,13 +81,13 @@ pub fn equations(check: bool) -> Result<()> {
     Ok(())
 }
 
-/// The Rust files of the directory and all within it.
-pub fn collect(directory: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+/// The files of the directory and all within it that end in this extension.
+pub fn collect(directory: &Path, wanted: &str, files: &mut Vec<PathBuf>) -> Result<()> {
     for entry in fs::read_dir(directory).with_context(|| format!("cannot read {}", util::shown(directory)))? {
         let path = entry?.path();
         if path.is_dir() {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            collect(&path, wanted, files)?;
+        } else if path.extension().is_some_and(|extension| extension == wanted) {
             files.push(path);
         }
     }

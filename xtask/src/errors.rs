@@ -1,4 +1,4 @@
-//! The error budget: docs/error-budget.md written by `validation/error_budget.py`, with the example just built.
+//! The error budget: docs/error-budget.md written by `validation/error_budget/budget.py`, with the example just built.
 
 use crate::{setup, util};
 use anyhow::Result;
@@ -8,8 +8,8 @@ pub fn errors(arguments: &[String]) -> Result<()> {
     build_example()?;
     setup::setup()?;
     util::run(
-        util::command(setup::python()).arg("validation/error_budget.py").args(arguments),
-        "validation/error_budget.py",
+        setup::module("validation.error_budget.budget").args(arguments),
+        "validation.error_budget.budget",
     )
 }
 

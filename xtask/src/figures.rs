@@ -1,4 +1,4 @@
-//! The report's figures: `out/report/` filled by `validation/figures.py`, with the command just built.
+//! The report's figures: `out/report/` filled by `validation/figures/draw.py`, with the command just built.
 
 use crate::{setup, util};
 use anyhow::Result;
@@ -9,8 +9,8 @@ pub fn figures(arguments: &[String]) -> Result<()> {
     setup::setup()?;
     println!("figures: into out/report/");
     util::run(
-        util::command(setup::python()).args(["validation/figures.py", "--out", "out/report"]).args(arguments),
-        "validation/figures.py",
+        setup::module("validation.figures.draw").args(["--out", "out/report"]).args(arguments),
+        "validation.figures.draw",
     )
 }
 

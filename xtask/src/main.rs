@@ -28,9 +28,9 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   setup             create .venv and install validation/requirements.txt in it
   build [--out DIR] build the Mitsuba plugin into DIR/plugins (default: target/mitsuba)
   render [--quality preview|final] [--variant V] [--only NAME]
-                    build, then render the review images into out/ (options of validation/render.py)
+                    build, then render the review images into out/ (options of validation/render/review.py)
   figures [--quick] [--only NAME]
-                    build the command and draw the report's figures into out/report/ (options of validation/figures.py)
+                    build the command and draw the report's figures into out/report/ (options of validation/figures/draw.py)
   errors [--quick]  write docs/error-budget.md: every stage in float64 and float32 against 50 digits
   test              run every check: Rust, C, plugin, Python, style
   verify            the long campaigns: more samples, the live peer, stress, fuzz, sanitize and
@@ -48,9 +48,10 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   equations [--check]
                     write the index of the report's equations in ARCHITECTURE.md from rust-core's comments, or only check it
   tidy              check rust-core's source: rooms use only those above them, no circles, no public item without a comment;
+                    validation's: folders use only those above them, no circles, no test is imported;
                     and that no file of the repository is long without a reason
   c-test            compile and run the C programs of rust-core/tests/c
-  bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench.py)
+  bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench/run.py)
   bench fronts      only run time against error, the time to 1 % of rendering included
   bench compare A.json B.json
                     the ratio of every figure; fails where B is worse than the spreads explain

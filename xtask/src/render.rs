@@ -1,4 +1,4 @@
-//! The review renders: `out/` filled by `validation/render.py`, with the plugin just built.
+//! The review renders: `out/` filled by `validation/render/review.py`, with the plugin just built.
 
 use crate::{build, setup, util};
 use anyhow::Result;
@@ -8,7 +8,7 @@ pub fn render(arguments: &[String]) -> Result<()> {
     build::build(&build::default_out())?;
     println!("render: into out/");
     util::run(
-        util::command(setup::python()).args(["validation/render.py", "--out", "out"]).args(arguments),
-        "validation/render.py",
+        setup::module("validation.render.review").args(["--out", "out"]).args(arguments),
+        "validation.render.review",
     )
 }

@@ -75,14 +75,13 @@ fn plugin() -> Result<()> {
     let out = util::root().join("target/mitsuba-sanitized");
     build::build_with(&out, &FLAGS)?;
     util::run(
-        util::command(setup::python())
-            .arg("validation/sanitized.py")
+        setup::module("validation.tests.sanitized")
             .env("PROB_WATER_PLUGINS", &out)
             .env("LD_PRELOAD", preloaded)
             // Python and Mitsuba keep what they allocate.
             .env("ASAN_OPTIONS", "detect_leaks=0:halt_on_error=1:exitcode=99:handle_segv=0")
             .env("PYTHONDONTWRITEBYTECODE", "1")
             .env("PYTHONMALLOC", "malloc"),
-        "validation/sanitized.py with the address sanitizer",
+        "validation.tests.sanitized with the address sanitizer",
     )
 }

@@ -8,6 +8,7 @@ use crate::util;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::PathBuf;
+use std::process::Command;
 
 /// An environment and what pip is told to install in it: a file of requirements after `-r`, or packages.
 struct Environment<'a> {
@@ -48,6 +49,13 @@ pub fn mitsuba(version: &str) -> Result<PathBuf> {
 pub fn version(package: &str) -> Result<String> {
     let code = format!("import importlib.metadata; print(importlib.metadata.version('{package}'))");
     util::output(util::command(python()).args(["-c", &code]), "asking for a version")
+}
+
+/// A module, run by the interpreter of `.venv`.
+pub fn module(name: &str) -> Command {
+    let mut command = util::command(python());
+    command.args(["-m", name]);
+    command
 }
 
 /// The interpreter of `.venv`.

@@ -84,8 +84,8 @@ fn run_pytest(options: &[&str]) -> Result<()> {
     figures::build_command()?;
     errors::build_example()?;
     util::run(
-        util::command(setup::python())
-            .args(["-m", "pytest", "validation", "-q", "-rs", "-p", "no:cacheprovider"])
+        setup::module("pytest")
+            .args(["validation", "-q", "-rs", "-p", "no:cacheprovider"])
             .args(options)
             .env("PYTHONDONTWRITEBYTECODE", "1"),
         "pytest",
@@ -116,10 +116,7 @@ pub fn verify() -> Result<()> {
     compat::compat()?;
     setup::peer()?;
     run_pytest(&["--full", "-s"])?;
-    util::run(
-        util::command(setup::python()).arg("validation/float32_errors.py"),
-        "validation/float32_errors.py",
-    )?;
+    util::run(&mut setup::module("validation.error_budget.float32"), "validation.error_budget.float32")?;
     errors::errors(&[])
 }
 

@@ -1,13 +1,16 @@
-//! What the source of this project keeps to and no compiler checks: the order of rust-core's rooms, no circles within one,
-//! no long file without a reason, no public item without a comment.
+//! What the source of this project keeps to and no compiler checks: the order of rust-core's rooms and of validation's
+//! folders, no circles within one, no long file without a reason, no public item without a comment.
 //!
 //! Lines are read, not syntax: comments, literals and tests are blanked first, and paths are found by `crate::` and
 //! `super::`. That is enough for source as `cargo fmt` leaves it.
+
+mod python;
 
 use crate::{equations, util};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::PathBuf;
 
 const SOURCE: &str = "rust-core/src";
 const LONGEST: usize = 500;
@@ -29,7 +32,7 @@ const CIRCLES: [(&str, &str, &str); 1] = [(
     "`Real::Extended` of lanes is a pair of lanes: each type is made of the other",
 )];
 
-/// A file of rust-core's source, by its path from there.
+/// A file of rust-core's source or of validation, by its path from there.
 struct File {
     path: String,
     text: String,
@@ -50,17 +53,8 @@ pub fn tidy() -> Result<()> {
 
 fn in_tree() -> Result<Vec<String>> {
     let root = util::root();
-    let mut paths = Vec::new();
-    equations::collect(&root.join(SOURCE), &mut paths)?;
-    paths.sort();
-    let mut files = Vec::new();
-    for path in paths {
-        let text =
-            fs::read_to_string(&path).with_context(|| format!("cannot read {}", util::shown(&path)))?;
-        let path = path.strip_prefix(root.join(SOURCE)).expect("lies there").display().to_string();
-        files.push(File { path, text });
-    }
-    let mut faults = in_source(&files, &CIRCLES);
+    let mut faults = in_source(&read(SOURCE, "rs")?, &CIRCLES);
+    faults.extend(python::faults(&read(python::FOLDER, "py")?));
     // An unpacked archive does not say which of its files are the project's.
     if root.join(".git").exists() {
         let tracked = util::output(util::command("git").arg("ls-files"), "git ls-files")?;
@@ -75,6 +69,20 @@ fn in_tree() -> Result<Vec<String>> {
         faults.extend(too_long(&lengths, &LONG));
     }
     Ok(faults)
+}
+
+/// The files below a directory of the root, in the order of their paths.
+fn read(directory: &str, extension: &str) -> Result<Vec<File>> {
+    let directory = util::root().join(directory);
+    let mut paths = Vec::new();
+    equations::collect(&directory, extension, &mut paths)?;
+    paths.sort();
+    let file = |path: PathBuf| {
+        let text =
+            fs::read_to_string(&path).with_context(|| format!("cannot read {}", util::shown(&path)))?;
+        Ok(File { path: path.strip_prefix(&directory).expect("lies there").display().to_string(), text })
+    };
+    paths.into_iter().map(file).collect()
 }
 
 fn too_long(lengths: &[(String, usize)], reasons: &[(&str, &str)]) -> Vec<String> {
@@ -135,7 +143,14 @@ fn in_source(files: &[File], circles: &[(&str, &str, &str)]) -> Vec<String> {
     }
     uses.dedup();
     uses.retain(|(from, _, to)| !circles.iter().any(|(user, used, _)| from == user && to == used));
-    for (user, line, used) in &uses {
+    faults.extend(in_circles(SOURCE, &uses));
+    faults
+}
+
+/// Uses (user, line, used) that close a circle.
+fn in_circles(directory: &str, uses: &[(&str, usize, String)]) -> Vec<String> {
+    let mut faults = Vec::new();
+    for (user, line, used) in uses {
         let mut reached = BTreeSet::from([used.as_str()]);
         while let Some((_, _, next)) =
             uses.iter().find(|(from, _, to)| reached.contains(from) && !reached.contains(to.as_str()))
@@ -143,7 +158,7 @@ fn in_source(files: &[File], circles: &[(&str, &str, &str)]) -> Vec<String> {
             reached.insert(next);
         }
         if reached.contains(user) {
-            faults.push(format!("{SOURCE}/{user}:{line}: a circle: {used} leads back here"));
+            faults.push(format!("{directory}/{user}:{line}: a circle: {used} leads back here"));
         }
     }
     faults

@@ -26,7 +26,7 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
     let cache = root().join("target/cache");
     let mut command = Command::new(program);
     command.current_dir(root());
-    for inherited in ["VIRTUAL_ENV", "PYTHONPATH", "PYTHONHOME"] {
+    for inherited in ["VIRTUAL_ENV", "PYTHONPATH", "PYTHONHOME", "PYTHONSAFEPATH"] {
         command.env_remove(inherited);
     }
     command

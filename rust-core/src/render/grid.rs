@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// the loss stays within 5 % of the slopes' variance, facets included (tests/mesh.rs).
 pub const CELLS: f64 = 3.0;
 /// Bytes that a vertex takes at the peak, while Mitsuba builds its tree over the triangles: 320 measured at
-/// a million vertices, 290 at four (validation/bench_surface.py).
+/// a million vertices, 290 at four (validation/bench/surface.py).
 pub const BYTES: u64 = 350;
 /// Ratio of a cell to its distance from which triangles are no longer square to the eye.
 const STEEPEST: f64 = 0.3;

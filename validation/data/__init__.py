@@ -1,0 +1,1 @@
+"""Values of a peer, and what wrote them."""

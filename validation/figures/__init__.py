@@ -1,0 +1,1 @@
+"""The report's figures and what it says about them."""

@@ -1,0 +1,21 @@
+"""What is off costs nothing in traced kernels (the scalar core: `cargo xtask bench off`)."""
+
+from validation.support.plugin_calls import operations
+
+
+def test_switches_leave_nothing_in_kernels(use):
+    """A feature that is off, or that this wind does not raise, is in no kernel."""
+    use("llvm_ad_rgb")
+    plain = operations({"friction_velocity": 24.0})
+    for off in ("whitecaps", "shadowing", "gram_charlier"):
+        without = operations({"friction_velocity": 24.0, off: False})
+        assert without["eval"] < plain["eval"], off
+    # No wind, no whitecaps: as many operations as with whitecaps = false.
+    calm, off = (operations({"friction_velocity": 0.0, "whitecaps": on}) for on in (True, False))
+    assert calm == off
+    # Waves too gentle for whitecaps.
+    gentle, off = (operations({"surface": "instance", "friction_velocity": 2.0, "whitecaps": on}) for on in (True, False))
+    assert gentle == off
+    # Other surfaces are compiled only where they are asked for: numbers alone differ between winds and footprints.
+    assert operations({"friction_velocity": 40.0, "footprint": 0.5}) == plain
+    assert operations({"surface": "instance", "friction_velocity": 24.0})["eval"] > plain["eval"]
