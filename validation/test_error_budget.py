@@ -5,7 +5,7 @@ import json
 import pytest
 
 import error_plot
-from error_budget import EXAMPLE, QUICK_COUNT, compare, failures, page
+from error_budget import CAMPAIGN, QUICK_COUNT, compare, failures, page
 from error_compare import Comparison
 from error_rows import KINDS, ROWS
 
@@ -15,7 +15,7 @@ CLAIMS = [pytest.param(row, kind, id=f"{row.name}-{kind}") for row in ROWS for k
 @pytest.fixture(scope="module")
 def quick() -> Comparison:
     """Compared once for all tests."""
-    return compare(EXAMPLE, QUICK_COUNT)
+    return compare(CAMPAIGN, QUICK_COUNT)
 
 
 @pytest.mark.parametrize(("row", "kind"), CLAIMS)

@@ -82,7 +82,7 @@ fn pytest() -> Result<Outcome> {
 
 fn run_pytest(options: &[&str]) -> Result<()> {
     figures::build_command()?;
-    errors::build_example()?;
+    errors::build_campaign()?;
     util::run(
         util::command(setup::python())
             .args(["-m", "pytest", "validation", "-q", "-rs", "-p", "no:cacheprovider"])
