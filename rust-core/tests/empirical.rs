@@ -73,10 +73,12 @@ fn widths() {
             for incidence in [0.0f64, 30.0, 60.0] {
                 let node = full(&sea(w, azimuth, 2000)).node(incidence.to_radians(), &[]).unwrap();
                 let found = node.sigma.to_degrees();
-                println!("w* {w} wind {azimuth} incidence {incidence}: {found:.2} deg, expected {expected}");
                 // Eq. 89: over the cosine of the incidence it stays nearly the same.
                 // The independent values are those at 30 degrees.
-                assert!((found / expected - 1.0).abs() < if incidence == 30.0 { 0.02 } else { 0.05 });
+                let allowed = if incidence == 30.0 { 0.02 } else { 0.05 };
+                let at =
+                    format!("w* {w} wind {azimuth} incidence {incidence}: {found} of {expected} degrees");
+                assert!((found / expected - 1.0).abs() < allowed, "{at}");
                 assert!(node.fitted > 0.97 && node.u_sigma > 0.0 && node.u_delta > node.u_sigma);
             }
         }
@@ -115,18 +117,11 @@ fn nodes_follow_the_ray_cast() {
             let [mean, spread] = found[0];
             let wanted = samples.statistics(0, k, &[]).unwrap();
             let off = (mean - wanted.mean) / wanted.sem.hypot(own);
-            println!(
-                "w* {w} incidence {incidence} theta_r {:+.1}: {mean:.3e} of {:.3e}, {off:+.2} standard errors, \
-                 own {:.2} %; spread {:.3}",
-                thetas[k].to_degrees(),
-                wanted.mean,
-                100.0 * own / mean,
-                spread / wanted.std,
-            );
-            assert!(off.abs() < 4.0, "{off}");
+            let at = format!("w* {w} incidence {incidence} theta_r {:+.1}", thetas[k].to_degrees());
+            assert!(off.abs() < 4.0, "{at}: {mean} of {}, {off} standard errors", wanted.mean);
             // The spread of a far flank takes more draws than there are.
             if nodes[0][k].facets > 0.05 * peak {
-                assert!((spread / wanted.std - 1.0).abs() < 0.1);
+                assert!((spread / wanted.std - 1.0).abs() < 0.1, "{at}: {spread} of {}", wanted.std);
             }
             count += 1;
         }
@@ -264,12 +259,11 @@ fn between_many_nodes() {
     assert!(share(&found.slopes[0], 0.1) > 0.99 && share(&found.slopes[1], 0.1) > 0.99);
 }
 
-/// Across the plane through the specular direction, against the full model to 1.5 sigma: Eq. 91 within 25 % of its relative
-/// spread, and Eq. 90 within 10 % of its mean, at 20 points where the wind lies along the plane.
+/// Across the plane through the specular direction, against the full model to 1.5 sigma: Eq. 91 within 18 % of its relative
+/// spread, and Eq. 90 within 7 % of its mean, at 20 points where the wind lies along the plane.
 #[test]
 fn across_the_plane() {
     let mut worst = [0.0f64; 2];
-    let mut count = 0;
     for (w, incidence) in [(8.0, 30.0f64), (24.0, 30.0), (24.0, 50.0), (40.0, 10.0), (16.0, 60.0)] {
         let water = with(&sea(w, 0.0, 16_384), |p| p.seed = 4);
         let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
@@ -284,16 +278,11 @@ fn across_the_plane() {
             let found = lobe.estimate(planes.source(), o);
             let relative = [found.std / found.mean, spread / mean];
             let off = [found.mean / mean - 1.0, relative[0] / relative[1] - 1.0];
-            println!(
-                "w* {w} incidence {incidence} at {step:+.1} sigma: mean {:+.3}, relative spread {:.2} of {:.2}",
-                off[0], relative[0], relative[1]
-            );
             worst = [0, 1].map(|m| worse(worst[m], off[m].abs()));
-            count += 1;
         }
     }
-    println!("{count} points, worst: mean {:.3}, relative spread {:.3}", worst[0], worst[1]);
-    assert!(worst[0] < 0.1 && worst[1] < 0.25);
+    let [mean, spread] = worst;
+    assert!(mean < 0.07 && spread < 0.18, "regression pins, of 0.060 and 0.164 measured: {mean} {spread}");
 }
 
 /// Draws through the spreads have Eq. 90's mean, whatever the spread of the offsets, and a spread near the full model's.
@@ -312,12 +301,10 @@ fn monte_carlo_dilutes_nothing_twice() {
             let formula = lobe.estimate(planes.source(), o);
             let moments = full.moments(&planes, &[o]).unwrap()[0];
             let [_, spread] = brdf(&water, &moments, planes.source(), o);
-            println!(
-                "w* {w} at {step} sigma: mean {:.4} of Eq. 90's {:.4}; spread {:.4}, Eq. 91 {:.4}, full {spread:.4}",
-                drawn.mean, formula.mean, drawn.std, formula.std
-            );
-            assert!((drawn.mean / formula.mean - 1.0).abs() < 0.05);
-            assert!((drawn.std / spread - 1.0).abs() < 0.35);
+            let at =
+                format!("w* {w} at {step} sigma: {drawn:?}, Eqs. 90-91 {formula:?}, full spread {spread}");
+            assert!((drawn.mean / formula.mean - 1.0).abs() < 0.05, "{at}");
+            assert!((drawn.std / spread - 1.0).abs() < 0.35, "{at}");
             assert!(drawn.quantiles.windows(2).all(|q| q[0] <= q[1]) && drawn.min >= 0.0);
             assert!((0.0..=1.0).contains(&drawn.over[0]) && drawn.mean_f_cos.is_nan());
         }
@@ -542,6 +529,5 @@ fn quantiles_by_the_table() {
             );
         }
     }
-    println!("{wrong} of {rows} quantiles beyond share_error, the worst {largest:.2} times");
     assert!(10 * wrong <= rows && largest > 0.3, "{wrong} of {rows}, {largest}");
 }

@@ -297,7 +297,7 @@ fn distributions() {
         let samples =
             Ensemble::new(&water).unwrap().sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
         let n = samples.instances() as f64;
-        let (mut worst, mut compared) = (0.0f64, 0);
+        let mut compared = 0;
         for (o, exact) in exact.iter().enumerate() {
             // From just below each quantile and above it: a whitecap's f is a lump, and so is 0.
             let below = |q: f64| if q > 0.0 { q * (1.0 - 1e-9) } else { -1.0 };
@@ -313,7 +313,6 @@ fn distributions() {
                 let alike = (exact.quantiles[q] / drawn.quantiles[q] - 1.0).abs() < 1e-3;
                 if drawn.std > 0.0 && !alike {
                     compared += 1;
-                    worst = worst.max(off);
                     assert!(off < 0.006 + 4.0 * error, "{name} {o} {level}: {:?}", &over[..2]);
                 }
             }
@@ -342,10 +341,6 @@ fn distributions() {
         }
         // In the others waves hardly tilt the surface: all f are alike.
         assert_eq!(compared > 0, !["hurricane", "calm", "next to calm"].contains(&name), "{name}");
-        println!(
-            "{name}: {compared} probabilities off by at most {worst:.4}, whitecaps {:.4}",
-            exact[0].whitecap
-        );
     }
 }
 
@@ -423,7 +418,6 @@ fn errors_are_bounded() {
         let here = compare_errors(&water, incidence);
         worst = [worst[0].max(here[0]), worst[1].max(here[1])];
     }
-    println!("worst {worst:.2?} of what is allowed");
     assert!(worst[0] > 0.2 && worst[1] > 0.2, "bounds that nothing comes near: {worst:?}");
 }
 

@@ -144,7 +144,6 @@ fn errors(f: &[f32], sea: &Parameters, [i, o, n]: &[Vectors; 3], wavy: bool) -> 
 #[test]
 fn lanes_follow_float64() {
     let mut rng = StdRng::seed_from_u64(1);
-    let mut worst = [[0.0f64; 2]; 2];
     for sea in seas() {
         for wavy in [false, true] {
             let all = rows(&sea, wavy, 500, &mut rng);
@@ -157,8 +156,6 @@ fn lanes_follow_float64() {
                 columns.eval_on(level, &lobe, &mut f).unwrap();
                 let [most, median] = errors(&f, &sea, &all, wavy);
                 assert!(most < 1e-4 && median < 1e-5, "{level:?}: {most:e}, {median:e}; {sea:?}");
-                let kept = &mut worst[usize::from(wavy)];
-                *kept = [kept[0].max(most), kept[1].max(median)];
             }
             let scalar: Vec<f32> =
                 (0..500).map(|k| lobe.eval(all[0][k], all[1][k], wavy.then(|| all[2][k]))).collect();
@@ -166,10 +163,6 @@ fn lanes_follow_float64() {
             assert!(most < 1e-4 && median < 1e-5, "scalar float32: {most:e}, {median:e}; {sea:?}");
         }
     }
-    println!(
-        "worst and median: level {:.1e} {:.1e}, waves {:.1e} {:.1e}",
-        worst[0][0], worst[0][1], worst[1][0], worst[1][1]
-    );
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn facets_about_any_normal() {
         }
         close(f, r[13]);
     }
-    println!("{} facet rows, worst relative error {worst:.1e}", rows.len());
+    assert!(worst < 4e-13, "regression pin 4e-13, of 2e-13 measured: {worst:e}");
 }
 
 /// `readings = "as_printed"`: pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand, for both reflectances
@@ -161,6 +161,5 @@ fn facets_in_float32() {
     }
     errors.sort_by(f64::total_cmp);
     let (median, worst) = (errors[errors.len() / 2], errors[errors.len() - 1]);
-    println!("{} rows: median {median:.1e}, worst {worst:.1e}", errors.len());
-    assert!(median < 1e-5 && worst < 1e-4);
+    assert!(median < 1e-5 && worst < 1e-4, "median {median:e}, worst {worst:e}");
 }

@@ -1,4 +1,4 @@
-"""Speed of the empirical model: what rust-core's example `empirical` measures, as a table."""
+"""Speed of the empirical model: what the campaign `empirical` measures, as a table."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Speed of the statistics of engagements: what rust-core's example `engagements` measures, as tables."""
+"""Speed of the statistics of engagements: what the campaign `engagements` measures, as tables."""
 
 from typing import Any
 

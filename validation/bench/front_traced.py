@@ -1,6 +1,6 @@
 """Run time against error of traced evaluation and of the mesh, one thread, as lines of JSON.
 
-`python -m validation.bench.front_traced REPEATS DIRECTORY [--quick]`, after the core's example `fronts` has written the same pairs and rays there.
+`python -m validation.bench.front_traced REPEATS DIRECTORY [--quick]`, after the campaign `fronts` has written the same pairs and rays there.
 """
 
 import json
@@ -22,7 +22,7 @@ COPIES = 50
 
 
 def point(front: str, family: str, setting: str, error: float, seconds: list[float]) -> None:
-    """Prints one, as the core's example does."""
+    """Prints one, as that campaign does."""
     print(json.dumps({"front": front, "family": family, "setting": setting, "error": float(error), "seconds": seconds}))
 
 

@@ -48,7 +48,7 @@ def measure(quick: bool, rounds: int, skipped: dict[str, str]) -> dict[str, Any]
     """Points of all fronts, and the times to 1 %."""
     repeats = 1 if quick else 5
     with tempfile.TemporaryDirectory() as directory:
-        points = lines([os.environ.get("CARGO", "cargo"), "run", "--release", "--quiet", "-p", "prob-water", "--example",
+        points = lines([os.environ.get("CARGO", "cargo"), "run", "--release", "--quiet", "-p", "prob-water-measure", "--bin",
                         "fronts", "--", str(repeats), directory], "the core's fronts")
         renders = None
         if "prob_water" not in skipped:

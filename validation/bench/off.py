@@ -18,7 +18,7 @@ from validation.support.plugin_calls import operations
 
 COUNT = 20_000
 CARGO = [os.environ.get("CARGO", "cargo")]
-#: Of the example `off`: features that can be compiled away.
+#: Of the campaign `off`: features that can be compiled away.
 CASES = ["whitecaps", "no_wind_for_whitecaps", "shadowing", "gram_charlier"]
 #: A kernel without a feature has nothing left of it: fewer operations than with it.
 TRACED = {
@@ -37,8 +37,8 @@ TRACED = {
 
 
 class Term(NamedTuple):
-    """An optional term: what switches it off, what does so by itself, and how that is measured: a case of the example `off`,
-    parameters with and without it for a traced kernel, or a line of the example `skips`."""
+    """An optional term: what switches it off, what does so by itself, and how that is measured: a case of the campaign `off`,
+    parameters with and without it for a traced kernel, or a line of the campaign `skips`."""
 
     name: str
     switch: str
@@ -99,13 +99,13 @@ def scalar() -> list[Table]:
 
 def instructions(case: str, code: str) -> float:
     """Of one evaluation: those of a run less those of its beginning."""
-    build = [*CARGO, "build", "--quiet", "--release", "-p", "prob-water", "--example", "off"]
+    build = [*CARGO, "build", "--quiet", "--release", "-p", "prob-water-measure", "--bin", "off"]
     subprocess.run(build, cwd=ROOT, check=True)
 
     def run(count: int) -> int:
         done = subprocess.run(
             ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null",
-             str(ROOT / "target/release/examples/off"), case, code, str(count)],
+             str(ROOT / "target/release/off"), case, code, str(count)],
             capture_output=True, text=True, check=True)
         return int(next(line for line in done.stderr.splitlines() if "Collected" in line).split()[-1])
 
@@ -127,7 +127,7 @@ def traced() -> list[Table]:
 
 def terms() -> Table:
     """Every optional term, what it costs and what switches it off."""
-    command = [*CARGO, "run", "--quiet", "--release", "-p", "prob-water", "--example", "skips"]
+    command = [*CARGO, "run", "--quiet", "--release", "-p", "prob-water-measure", "--bin", "skips"]
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
     timed = {row["name"]: row for row in map(json.loads, done.stdout.splitlines())}
     valgrind, llvm = bool(shutil.which("valgrind")), usable_llvm()[0]

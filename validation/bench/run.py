@@ -96,11 +96,11 @@ def traced(rounds: int, passes: int, pairs: int) -> dict[str, Any]:
     return {"pairs": pairs, "skipped": skipped, "versions": versions, "million_per_s": figures}
 
 
-def measured(example: str, repeats: int) -> list[dict[str, Any]]:
-    """The Rust core's own figures, from one of its examples."""
-    command = [os.environ.get("CARGO", "cargo"), "run", "--release", "--quiet", "-p", "prob-water",
-               "--example", example, "--", str(repeats)]
-    rows = fronts.lines(command, f"the Rust core, {example}", one_thread=False)
+def measured(campaign: str, repeats: int) -> list[dict[str, Any]]:
+    """The Rust core's own figures, from one of the campaigns in `measure/`."""
+    command = [os.environ.get("CARGO", "cargo"), "run", "--release", "--quiet", "-p", "prob-water-measure",
+               "--bin", campaign, "--", str(repeats)]
+    rows = fronts.lines(command, f"the Rust core, {campaign}", one_thread=False)
     for row in rows:
         for key in ("per_s", "seconds", "exact"):
             if isinstance(row.get(key), list):

@@ -71,7 +71,7 @@ def main() -> None:
             print(f"{variant:12} {row['vertices']:9} {row['shape_s']:8.2f} {row['scene_s']:8.2f} {row['peak_mib']:9.0f} "
                   f"{row['bytes']:9.0f} {row.get('ns_per_ray', np.nan):7.0f}", flush=True)
     print("\nA ray cast onto the sum of waves itself, exact, one thread")
-    done = subprocess.run(["cargo", "run", "--quiet", "--release", "-p", "prob-water", "--example", "cast"], cwd=ROOT,
+    done = subprocess.run(["cargo", "run", "--quiet", "--release", "-p", "prob-water-measure", "--bin", "cast"], cwd=ROOT,
                           check=True, capture_output=True, text=True)
     for row in map(json.loads, done.stdout.splitlines()):
         print(f"{row['components']:5} waves {row['ns_per_ray']:9} ns/ray")

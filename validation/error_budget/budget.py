@@ -1,6 +1,6 @@
 """The error budget: every stage of the model in float64 and float32 against the equations evaluated to 50 digits.
 
-Run by `cargo xtask errors [--quick]`, which builds the example `errors` that evaluates the stages. Writes
+Run by `cargo xtask errors [--quick]`, which builds the campaign `errors` that evaluates the stages. Writes
 docs/error-budget.md and docs/images/error-budget.png; `--quick` only prints. The exit status is 1 where a bound fails.
 """
 
@@ -15,18 +15,18 @@ from validation.error_budget.compare import Comparison
 from validation.error_budget.rows import CONFIGURED, GROUPS, KINDS, ROWS, Row
 from validation.support.paths import ROOT
 
-EXAMPLE = ROOT / "target/release/examples/errors"
+CAMPAIGN = ROOT / "target/release/errors"
 #: Rows a stage, about.
 COUNT, QUICK_COUNT = 2000, 150
 
 
-def compare(example: Path, count: int) -> Comparison:
-    """Runs the example and compares what it prints."""
+def compare(campaign: Path, count: int) -> Comparison:
+    """Runs the campaign and compares what it prints."""
     comparison = Comparison()
-    with subprocess.Popen([example, str(count)], stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen([campaign, str(count)], stdout=subprocess.PIPE, text=True) as process:
         comparison.read(process.stdout)
     if process.returncode != 0:
-        raise RuntimeError(f"{example} failed ({process.returncode})")
+        raise RuntimeError(f"{campaign} failed ({process.returncode})")
     return comparison
 
 
@@ -128,10 +128,10 @@ def main() -> int:
     """Compares, prints and, unless quick, writes the page and the plot."""
     parser = argparse.ArgumentParser(prog="cargo xtask errors", description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help=f"{QUICK_COUNT} inputs a stage, nothing is written")
-    parser.add_argument("--example", type=Path, default=EXAMPLE, metavar="PATH", help="the example errors")
+    parser.add_argument("--campaign", type=Path, default=CAMPAIGN, metavar="PATH", help="the campaign errors")
     arguments = parser.parse_args()
     start = time.monotonic()
-    comparison = compare(arguments.example, QUICK_COUNT if arguments.quick else COUNT)
+    comparison = compare(arguments.campaign, QUICK_COUNT if arguments.quick else COUNT)
     print(printed(comparison))
     if not arguments.quick:
         (ROOT / "docs/error-budget.md").write_text(page(comparison), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the example `errors` printed against the reference: errors by row of the budget and by kind (float64, float32,
+"""What the campaign `errors` printed against the reference: errors by row of the budget and by kind (float64, float32,
 lanes, approximation).
 """
 

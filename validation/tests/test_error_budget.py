@@ -5,7 +5,7 @@ import json
 import pytest
 
 from validation.error_budget import plot
-from validation.error_budget.budget import EXAMPLE, QUICK_COUNT, compare, failures, page
+from validation.error_budget.budget import CAMPAIGN, QUICK_COUNT, compare, failures, page
 from validation.error_budget.compare import Comparison
 from validation.error_budget.rows import KINDS, ROWS
 
@@ -15,7 +15,7 @@ CLAIMS = [pytest.param(row, kind, id=f"{row.name}-{kind}") for row in ROWS for k
 @pytest.fixture(scope="module")
 def quick() -> Comparison:
     """Compared once for all tests."""
-    return compare(EXAMPLE, QUICK_COUNT)
+    return compare(CAMPAIGN, QUICK_COUNT)
 
 
 @pytest.mark.parametrize(("row", "kind"), CLAIMS)

@@ -65,6 +65,12 @@ scene = mi.load_dict({"type": "scene", "integrator": {"type": "direct"}, "light"
     run([sys.executable, "-c", code])
 
 
+def test_python_example(tmp_path):
+    """A picture and a line for every wind."""
+    printed = run([sys.executable, "scenes/winds.py", tmp_path]).splitlines()
+    assert len(printed) == len(list(tmp_path.glob("wind_*.exr"))) == 3
+
+
 def test_plugin_documentation(use):
     """Its dictionary loads; what it calls exposed is what `traverse` gives, for every way to give the wind."""
     mi = use("scalar_rgb")

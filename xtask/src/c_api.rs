@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 const SOURCE: &str = "rust-core/src/api/c_api.rs";
 const HEADER: &str = "rust-core/include/prob_water.h";
-const PROGRAMS: &str = "rust-core/tests/c";
+const PROGRAMS: [&str; 2] = ["rust-core/tests/c", "rust-core/examples"];
 
 /// Writes the header, or only compares it with the committed one. The single source file is parsed as it stands:
 /// no macro is expanded, so no nightly compiler is needed.
@@ -81,9 +81,13 @@ pub fn programs(directory: &str, flags: &[&str]) -> Result<Vec<PathBuf>> {
             "staticlib,cdylib",
         ],
     )?;
-    let sources = util::files_with_extension(&util::root().join(PROGRAMS), "c")?;
-    if sources.is_empty() {
-        bail!("no C program in {PROGRAMS}");
+    let mut sources = Vec::new();
+    for directory in PROGRAMS {
+        let found = util::files_with_extension(&util::root().join(directory), "c")?;
+        if found.is_empty() {
+            bail!("no C program in {directory}");
+        }
+        sources.extend(found);
     }
     let directory = util::root().join("target").join(directory);
     util::create_dir(&directory)?;

@@ -20,22 +20,7 @@ pub struct Built {
 /// from its dependencies by the directory of its manifest.
 pub fn static_library(package_directory: &str, arguments: &[&str]) -> Result<Built> {
     let manifest = util::root().join(package_directory).join("Cargo.toml");
-    let mut command = util::cargo();
-    let (verb, arguments) = arguments.split_first().context("no cargo command")?;
-    command.arg(verb).arg("--message-format=json-render-diagnostics").args(arguments);
-    let mut child =
-        command.stdout(Stdio::piped()).spawn().map_err(|error| util::not_started(&command, error))?;
-
-    let mut messages: Vec<Value> = Vec::new();
-    for line in BufReader::new(child.stdout.take().expect("stdout is piped")).lines() {
-        // A build script's own prints do not reach this stream, but a tool around rustc may write to it.
-        messages.extend(serde_json::from_str::<Value>(&line?));
-    }
-    let status = child.wait()?;
-    if !status.success() {
-        bail!("cargo {verb} of {package_directory} failed ({status})");
-    }
-
+    let messages = messages(arguments, package_directory)?;
     let is = |message: &Value, reason: &str| message["reason"] == reason;
     let artifact = messages
         .iter()
@@ -63,4 +48,38 @@ pub fn static_library(package_directory: &str, arguments: &[&str]) -> Result<Bui
         .and_then(|message| message["out_dir"].as_str())
         .map(PathBuf::from);
     Ok(Built { library, out_dir })
+}
+
+/// The programs of all examples of the workspace, built with the features that `cargo test` has.
+pub fn examples() -> Result<Vec<PathBuf>> {
+    let arguments = ["build", "--quiet", "--workspace", "--all-features", "--examples"];
+    let messages = messages(&arguments, "the examples")?;
+    let mut programs: Vec<PathBuf> = messages
+        .iter()
+        .filter(|message| message["target"]["kind"][0] == "example")
+        .filter_map(|message| message["executable"].as_str())
+        .map(PathBuf::from)
+        .collect();
+    programs.sort();
+    Ok(programs)
+}
+
+/// What cargo says of a build of `what`, message for message.
+fn messages(arguments: &[&str], what: &str) -> Result<Vec<Value>> {
+    let mut command = util::cargo();
+    let (verb, arguments) = arguments.split_first().context("no cargo command")?;
+    command.arg(verb).arg("--message-format=json-render-diagnostics").args(arguments);
+    let mut child =
+        command.stdout(Stdio::piped()).spawn().map_err(|error| util::not_started(&command, error))?;
+
+    let mut messages: Vec<Value> = Vec::new();
+    for line in BufReader::new(child.stdout.take().expect("stdout is piped")).lines() {
+        // A build script's own prints do not reach this stream, but a tool around rustc may write to it.
+        messages.extend(serde_json::from_str::<Value>(&line?));
+    }
+    let status = child.wait()?;
+    if !status.success() {
+        bail!("cargo {verb} of {what} failed ({status})");
+    }
+    Ok(messages)
 }

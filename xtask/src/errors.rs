@@ -1,11 +1,11 @@
-//! The error budget: docs/error-budget.md written by `validation/error_budget/budget.py`, with the example just built.
+//! The error budget: docs/error-budget.md written by `validation/error_budget/budget.py`, with the campaign just built.
 
 use crate::{setup, util};
 use anyhow::Result;
 
-/// Builds the example and compares; the arguments are the script's own.
+/// Builds the campaign and compares; the arguments are the script's own.
 pub fn errors(arguments: &[String]) -> Result<()> {
-    build_example()?;
+    build_campaign()?;
     setup::setup()?;
     util::run(
         setup::module("validation.error_budget.budget").args(arguments),
@@ -13,8 +13,8 @@ pub fn errors(arguments: &[String]) -> Result<()> {
     )
 }
 
-/// Builds `target/release/examples/errors`, wherever else cargo is told to build.
-pub fn build_example() -> Result<()> {
-    println!("build: the example errors");
-    util::build_in_target(&["-p", "prob-water", "--example", "errors"])
+/// Builds `target/release/errors`, wherever else cargo is told to build.
+pub fn build_campaign() -> Result<()> {
+    println!("build: the campaign errors");
+    util::build_in_target(&["-p", "prob-water-measure", "--bin", "errors"])
 }

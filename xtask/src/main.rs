@@ -47,10 +47,11 @@ The commands of prob-water, each run as `cargo xtask <command>`:
                     rust-core, or only check that they are current
   equations [--check]
                     write the index of the report's equations in ARCHITECTURE.md from rust-core's comments, or only check it
+  examples          run the examples of the library, rust-core/examples
   tidy              check rust-core's source: rooms use only those above them, no circles, no public item without a comment;
                     validation's: folders use only those above them, no circles, no test is imported;
                     and that no file of the repository is long without a reason
-  c-test            compile and run the C programs of rust-core/tests/c
+  c-test            compile and run the C programs of rust-core/tests/c and rust-core/examples
   bench [OPTIONS]   build, set up the peers and measure: tables, and out/bench.html (options of validation/bench/run.py)
   bench fronts      only run time against error, the time to 1 % of rendering included
   bench compare A.json B.json
@@ -101,6 +102,7 @@ fn dispatch(arguments: &[String]) -> Result<()> {
         ["parameters", "--check"] => parameters::parameters(true)?,
         ["equations"] => equations::equations(false)?,
         ["equations", "--check"] => equations::equations(true)?,
+        ["examples"] => test::examples()?,
         ["tidy"] => tidy::tidy()?,
         ["c-test"] => c_api::c_test()?,
         _ => bail!("`{}` is not understood; `cargo xtask help` lists the commands", words.join(" ")),

@@ -1,4 +1,4 @@
-//! The stress campaign: `rust-core/examples/stress`.
+//! The stress campaign: `measure/src/bin/stress`.
 
 use crate::util;
 use anyhow::Result;
@@ -10,7 +10,7 @@ const SLICE: &str = "12";
 pub fn stress(arguments: &[String]) -> Result<()> {
     util::run(
         util::cargo()
-            .args(["run", "--release", "--quiet", "-p", "prob-water", "--example", "stress", "--"])
+            .args(["run", "--release", "--quiet", "-p", "prob-water-measure", "--bin", "stress", "--"])
             .args(arguments),
         "the stress campaign",
     )

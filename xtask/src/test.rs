@@ -3,7 +3,8 @@
 //! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
 
 use crate::{
-    build, c_api, compat, equations, errors, figures, fuzz, parameters, sanitize, setup, stress, tidy, util,
+    build, c_api, cargo, compat, equations, errors, figures, fuzz, parameters, sanitize, setup, stress, tidy,
+    util,
 };
 use anyhow::{Result, bail};
 use std::time::{Duration, Instant};
@@ -19,8 +20,9 @@ enum Outcome {
 }
 use Outcome::{Passed, Skipped};
 
-const STEPS: [Step; 12] = [
+const STEPS: [Step; 13] = [
     Step { name: "cargo test", run: cargo_test },
+    Step { name: "examples", run: || examples().map(|()| Passed) },
     Step { name: "tidy", run: || tidy::tidy().map(|()| Passed) },
     Step { name: "header check", run: || c_api::header(true).map(|()| Passed) },
     Step { name: "parameters", run: || parameters::parameters(true).map(|()| Passed) },
@@ -75,6 +77,23 @@ fn cargo_test() -> Result<Outcome> {
     Ok(Passed)
 }
 
+/// Runs the examples of the library; each must succeed and print something.
+pub fn examples() -> Result<()> {
+    let programs = cargo::examples()?;
+    if programs.is_empty() {
+        bail!("there are no examples");
+    }
+    for program in programs {
+        let name = util::shown(&program).to_string();
+        let printed = util::output(&mut util::command(&program), &name)?;
+        if printed.is_empty() {
+            bail!("{name} prints nothing");
+        }
+        println!("examples: {name}: {} lines", printed.lines().count());
+    }
+    Ok(())
+}
+
 fn pytest() -> Result<Outcome> {
     run_pytest(&[])?;
     Ok(Passed)
@@ -82,7 +101,7 @@ fn pytest() -> Result<Outcome> {
 
 fn run_pytest(options: &[&str]) -> Result<()> {
     figures::build_command()?;
-    errors::build_example()?;
+    errors::build_campaign()?;
     util::run(
         setup::module("pytest")
             .args(["validation", "-q", "-rs", "-p", "no:cacheprovider"])

@@ -1,7 +1,7 @@
 //! What is off costs nothing: the same evaluations with a term, by code that looks at its switch and finds it off, and by
 //! code compiled without it. `validation/bench/off.py` counts their instructions.
 //!
-//! `cargo run --release -p prob-water --example off -- CASE with|switched|without COUNT`
+//! `cargo run --release -p prob-water-measure --bin off -- CASE with|switched|without COUNT`
 
 use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Wind};
 use std::hint::black_box;

@@ -1,7 +1,7 @@
 //! What every stage of the model gives in float64 and float32 for random and extreme inputs, as lines of JSON:
 //! `validation/error_budget/budget.py` compares them with the equations evaluated to 50 digits.
 //!
-//! `cargo run --release -p prob-water --example errors [-- ROWS]`: about so many rows a stage (2000 unless told), the same
+//! `cargo run --release -p prob-water-measure --bin errors [-- ROWS]`: about so many rows a stage (2000 unless told), the same
 //! in every run. A line has a `stage`, its inputs `x` and what came out, `y`, by number type; a `sea` describes the
 //! parameters that later lines name by number. Numbers read back to the same bits; infinity is null.
 

@@ -1,7 +1,7 @@
 //! Work that is left out where it makes no difference, and what that saves, one thread, as lines of JSON;
 //! `validation/bench/off.py` makes a table of it.
 //!
-//! `cargo run --release -p prob-water --example skips [-- REPEATS]`: seconds with the work and without, in turns.
+//! `cargo run --release -p prob-water-measure --bin skips [-- REPEATS]`: seconds with the work and without, in turns.
 
 use glam::DVec3;
 use prob_water::brdf::up;

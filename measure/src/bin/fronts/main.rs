@@ -1,6 +1,6 @@
 //! Run time against error of the core, one thread, as lines of JSON: the fronts that `validation/bench/fronts.py` draws.
 //!
-//! `cargo run --release -p prob-water --example fronts -- REPEATS DIRECTORY`: every time is measured `REPEATS` times. What
+//! `cargo run --release -p prob-water-measure --bin fronts -- REPEATS DIRECTORY`: every time is measured `REPEATS` times. What
 //! others are to compute too (pairs of directions, rays) is written into the directory, with what comes out.
 
 mod brdf;

@@ -1,6 +1,6 @@
 //! Speed of drawn and of exact statistics, as lines of JSON; `validation/bench/run.py` runs it.
 //!
-//! `cargo run --release -p prob-water --example engagements [-- REPEATS]`: every figure is the best of
+//! `cargo run --release -p prob-water-measure --bin engagements [-- REPEATS]`: every figure is the best of
 //! `REPEATS` (5 unless told); of whole scenarios and of exact means every run is told.
 
 use prob_water::surface::Numbers;

@@ -1,8 +1,7 @@
 //! Lobes by tables: facets of any footprint, the empirical model, the mean over all waves.
 
-use crate::closed_form::shown;
 use crate::draw::{Draw, Vec3};
-use crate::tally::Tally;
+use crate::tally::{Tally, fine, shown};
 use prob_water::brdf::up;
 use prob_water::{
     Across, Average, EmpiricalLobe, EnsembleLobe, FacetTable, Fresnel, Parameters, Surface, Table, Wind,
@@ -10,11 +9,6 @@ use prob_water::{
 
 /// Evaluations that the making of a lobe is worth.
 const ROWS: u64 = 1024;
-
-/// Finite and not negative.
-pub fn fine(x: f64) -> bool {
-    x.is_finite() && x >= 0.0
-}
 
 /// Two directions, as adversarial as those of the closed form; every other pair is specular or nearly.
 pub fn pair(draw: &mut Draw) -> [Vec3; 2] {

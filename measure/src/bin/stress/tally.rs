@@ -1,11 +1,26 @@
 //! What a block found, and the sum of all.
 
+use crate::rows::Row;
 use prob_water::Parameters;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// Steps of the histogram of errors in an octave.
 const STEPS: f64 = 8.0;
+
+/// Violations that are printed at length.
+pub const SHOWN: usize = 10;
+
+/// Finite and not negative.
+pub fn fine(x: f64) -> bool {
+    x.is_finite() && x >= 0.0
+}
+
+/// A row with its bits, and the values in question.
+pub fn shown(row: &Row, values: &[f64]) -> String {
+    let bits = row.map(|v| v.map(|x| format!("{:016x}", x.to_bits())).join(" ")).join(" | ");
+    format!("{row:?} = {bits}, values {values:?}")
+}
 
 /// Relative errors: how many of each size, and the largest with its place.
 #[derive(Default, Clone)]
@@ -135,7 +150,7 @@ impl Tally {
             println!("  {name}: median below {median:.1e}, worst {worst:.2e}, of {count}");
             println!("    at {}", errors.place);
         }
-        for violation in self.violations.iter().take(super::SHOWN) {
+        for violation in self.violations.iter().take(SHOWN) {
             println!("VIOLATION ({part}) {violation}");
         }
     }

@@ -1,6 +1,6 @@
 //! Speed of the empirical model beside the full one, as lines of JSON; `validation/bench/run.py` runs it.
 //!
-//! `cargo run --release -p prob-water --example empirical [-- REPEATS]`: every figure is measured `REPEATS` times (5
+//! `cargo run --release -p prob-water-measure --bin empirical [-- REPEATS]`: every figure is measured `REPEATS` times (5
 //! unless told), all in turn, on one thread.
 
 use prob_water::batch::Rows;

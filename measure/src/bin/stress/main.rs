@@ -1,6 +1,6 @@
 //! The stress campaign: adversarial and random seas and directions, and whatever may not happen to any of them.
 //!
-//! `cargo run --release -p prob-water --example stress -- [--count N] [--seconds S] [--seed K]`, or
+//! `cargo run --release -p prob-water-measure --bin stress -- [--count N] [--seconds S] [--seed K]`, or
 //! `cargo xtask stress`. The closed form gets `--count` evaluations of f (1e9 unless told); what costs more gets fewer of
 //! its own ([`PARTS`]). With `--seconds` every part stops after its share of them.
 //!
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use tally::Tally;
+use tally::{SHOWN, Tally};
 
 /// A kind of evaluation, drawn and checked block by block.
 struct Part {
@@ -49,9 +49,6 @@ const PARTS: [Part; 7] = [
     Part { name: "ray casts", share: 1e-4, time: 0.05, batch: 16, block: surfaces::casts },
     Part { name: "statistics", share: 1e-5, time: 0.05, batch: 2, block: surfaces::statistics },
 ];
-
-/// Violations that are printed at length.
-const SHOWN: usize = 10;
 
 struct Options {
     count: f64,

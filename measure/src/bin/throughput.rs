@@ -1,6 +1,6 @@
 //! Throughput of the core on one thread, of scalars and of lanes, as lines of JSON; `validation/bench/run.py` runs it.
 //!
-//! `cargo run --release -p prob-water --example throughput [-- REPEATS]`: every figure is measured
+//! `cargo run --release -p prob-water-measure --bin throughput [-- REPEATS]`: every figure is measured
 //! `REPEATS` times (5 unless told), interleaved with the others.
 
 use prob_water::batch::Columns;

@@ -2,9 +2,8 @@
 //! float64.
 
 use crate::draw::Draw;
-use crate::means::fine;
 use crate::rows::{Block, ROWS, Row};
-use crate::tally::Tally;
+use crate::tally::{Tally, fine, shown};
 use prob_water::batch::{Columns, Rows, UNIT_TOLERANCE};
 use prob_water::real::{Vec3, dot};
 use prob_water::{Lobe, Parameters, Scalar, SlopeMeasure, Water};
@@ -221,12 +220,6 @@ fn sampled<T: Scalar + PartialEq>(
         let row = [i, n, u].map(|v| v.map(T::to_f64));
         format!("{}\n  {s:?} (source, normal, uniform numbers)", shown(&row, &[pdf, f]))
     });
-}
-
-/// A row with its bits, and the values in question.
-pub fn shown(row: &Row, values: &[f64]) -> String {
-    let bits = row.map(|v| v.map(|x| format!("{:016x}", x.to_bits())).join(" ")).join(" | ");
-    format!("{row:?} = {bits}, values {values:?}")
 }
 
 /// The sea in a line.

@@ -1,6 +1,6 @@
 //! Sums of waves over places, one thread, as lines of JSON; `validation/bench/run.py` runs it.
 //!
-//! `cargo run --release -p prob-water --example wave_sums [-- REPEATS]`: components per second, heights, slopes and
+//! `cargo run --release -p prob-water-measure --bin wave_sums [-- REPEATS]`: components per second, heights, slopes and
 //! accelerations of every place included, all candidates in turn, each `REPEATS` times (5 unless told).
 
 use prob_water::simd::Level;

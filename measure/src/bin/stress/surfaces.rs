@@ -1,9 +1,8 @@
 //! Drawn surfaces: the lobe of one of them, rays cast onto them, and statistics of engagements as far off as may be.
 
-use crate::closed_form::shown;
 use crate::draw::{Draw, Vec3};
-use crate::means::{drawn_sea, fine, pair};
-use crate::tally::Tally;
+use crate::means::{drawn_sea, pair};
+use crate::tally::{Tally, fine, shown};
 use prob_water::statistics::FARTHEST;
 use prob_water::surface::Numbers;
 use prob_water::surface::Path;
