@@ -16,8 +16,7 @@ const SOURCE: &str = "rust-core/src";
 const LONGEST: usize = 500;
 
 /// Files of more than [`LONGEST`] lines, and why each is one file.
-const LONG: [(&str, &str); 6] = [
-    ("mitsuba-plugin/cpp/prob_water.cpp", "one class template, the plugin as Mitsuba asks for it"),
+const LONG: [(&str, &str); 5] = [
     ("rust-core/src/api/c_api.rs", "the C interface: its header is written from this one file"),
     ("rust-core/src/brdf/lobe.rs", "the closed form in one piece: facets, whitecaps and their mixture"),
     ("rust-core/src/config/vocabulary.rs", "the one list of parameters, and tests of every row beside it"),
