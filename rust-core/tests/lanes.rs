@@ -1,8 +1,8 @@
 //! Lanes of float32 against the float64 text, for every kind of vector that this processor has.
 
-use prob_water::batch::{Columns, Coordinates, Rows};
+use prob_water::batch::{Columns, Coordinates, Rows, SampleColumns, Sources};
 use prob_water::simd::Level;
-use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Wind};
+use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::f64::consts::TAU;
 
@@ -19,6 +19,33 @@ impl Table {
     fn columns(&self) -> Coordinates<'_> {
         self.0.each_ref().map(Vec::as_slice)
     }
+}
+
+/// Draws of every row, in the vectors of a level.
+fn samples(sources: Sources<'_>, level: Level, lobe: &Lobe<f32>, count: usize) -> Vec<Sample<f32>> {
+    let mut numbers = [0; 5].map(|_| vec![f32::NAN; count]);
+    let mut whitecap = vec![false; count];
+    let [x, y, z, pdf, f] = numbers.each_mut().map(Vec::as_mut_slice);
+    let out = SampleColumns { to_observer: [x, y, z], pdf, f, whitecap: &mut whitecap };
+    sources.sample_on(level, lobe, out).unwrap();
+    let [x, y, z, pdf, f] = numbers;
+    (0..count)
+        .map(|k| {
+            let direction = [x[k], y[k], z[k]];
+            Sample { direction, pdf: pdf[k], f: f[k], whitecap: whitecap[k] }
+        })
+        .collect()
+}
+
+/// Three uniform numbers of every row; one of seven is at an end of its range, but for 0 as the first: there a tail of any
+/// probability is drawn from, and lanes have none below 1e-38.
+fn uniform(count: usize, rng: &mut StdRng) -> Vectors {
+    let mut number = |least: f32| match rng.random_range(0..14) {
+        0 => least,
+        1 => 1.0f32.next_down(),
+        _ => rng.random::<f32>().max(least),
+    };
+    (0..count).map(|_| [number(f32::EPSILON / 2.0), number(0.0), number(0.0)]).collect()
 }
 
 fn levels() -> impl Iterator<Item = Level> {
@@ -192,6 +219,79 @@ fn densities_follow_float64() {
     }
 }
 
+/// The same numbers draw the same direction as in float64, within 1e-4 and but for ties, and its density and f are those of the
+/// drawn direction.
+#[test]
+fn draws_follow_float64() {
+    const COUNT: usize = 301;
+    let mut rng = StdRng::seed_from_u64(5);
+    let (mut ties, mut all, mut worst) = (0, 0, [0.0f64; 3]);
+    for sea in seas() {
+        for (wavy, whitecaps) in [(false, false), (true, true), (false, true)] {
+            let sea = Parameters { whitecaps, ..sea };
+            let water = sea.configure().unwrap();
+            let (lobe, single) = (water.local_lobe(), water.local_lobe().cast());
+            let plain = Parameters { gram_charlier: false, ..sea }.configure().unwrap().local_lobe();
+            let [i, _, n] = rows(&sea, wavy, COUNT, &mut rng);
+            let u = uniform(COUNT, &mut rng);
+            let tables = [&i, &u, &n].map(Table::of);
+            let [ic, uc, nc] = tables.each_ref().map(Table::columns);
+            let sources = Sources::new(ic, uc, wavy.then_some(nc)).unwrap();
+            let sigmas = water.variances.map(f64::sqrt);
+            for level in levels() {
+                let drawn = samples(sources, level, &single, COUNT);
+                // Values are, to the bit, what the drawn directions are given.
+                let kept: Vec<usize> = (0..COUNT).filter(|k| drawn[*k].pdf > 0.0).collect();
+                let of = |v: &Vectors| Table::of(&kept.iter().map(|k| v[*k]).collect());
+                let [ik, ok, nk] = [&i, &drawn.iter().map(|s| s.direction).collect(), &n].map(of);
+                let columns = Columns::new(ik.columns(), ok.columns(), wavy.then_some(nk.columns())).unwrap();
+                let mut values = [vec![0.0; kept.len()], vec![0.0; kept.len()]];
+                columns.pdf_on(level, &single, &mut values[0]).unwrap();
+                columns.eval_on(level, &single, &mut values[1]).unwrap();
+                let same = kept
+                    .iter()
+                    .enumerate()
+                    .all(|(row, k)| (values[0][row], values[1][row]) == (drawn[*k].pdf, drawn[*k].f));
+                assert!(same, "{level:?} {sea:?}");
+                for (k, found) in drawn.into_iter().enumerate() {
+                    let (i, u, normal) = (wide(i[k]), wide(u[k]), wavy.then(|| wide(n[k])));
+                    let exact = lobe.sample(i, normal, u);
+                    let o = wide(found.direction);
+                    let away = (0..3).map(|k| (o[k] - exact.direction[k]).abs()).fold(0.0, f64::max);
+                    all += 1;
+                    if found.whitecap != exact.whitecap || away > 1e-4 {
+                        ties += 1;
+                    } else {
+                        worst[0] = worst[0].max(away);
+                    }
+                    if found.pdf == 0.0 {
+                        assert!(o == [0.0; 3] && found.f == 0.0, "{level:?} {found:?} {sea:?}");
+                        continue;
+                    }
+                    let at = (level, i, o, normal, sea);
+                    let (pdf, size) = (lobe.pdf(i, o, normal), plain.eval(i, o, normal));
+                    // As above, and so does that of a cosine to the wave normal.
+                    let cos = normal.map_or(o[2], |n| (0..3).map(|k| o[k] * n[k]).sum());
+                    let sigma = sigmas[0].min(sigmas[1]);
+                    let bound = 1e-4 + if wavy { 1e-5 / sigma + 2e-7 / cos } else { 0.0 };
+                    let error = ((f64::from(found.pdf) - pdf).abs() - 1e-30).max(0.0) / pdf;
+                    worst[1] = worst[1].max(error);
+                    assert!(error < bound, "{error:e} {found:?} {at:?}");
+                    if tilt2(&sea, sigmas, [i, o, wide(n[k])]) < 55.0 {
+                        let error = (f64::from(found.f) - lobe.eval(i, o, normal)).abs();
+                        let error = (error - 1e-30).max(0.0) / size;
+                        worst[2] = worst[2].max(error);
+                        assert!(error < 1e-4, "f {error:e} {size:e} {found:?} {at:?}");
+                    }
+                }
+            }
+        }
+    }
+    let [direction, pdf, f] = worst;
+    println!("worst: direction {direction:.1e}, pdf {pdf:.1e}, f {f:.1e}; {ties} ties of {all}");
+    assert!(ties * 10_000 < all, "{ties} of {all}");
+}
+
 /// Values of a row depend neither on its neighbours nor on threads, nor on the layout of rows in memory.
 #[test]
 fn rows_are_independent() {
@@ -199,7 +299,8 @@ fn rows_are_independent() {
     let all = rows(&sea, true, 40_000, &mut StdRng::seed_from_u64(3));
     let tables = all.each_ref().map(Table::of);
     let [i, o, n] = tables.each_ref().map(Table::columns);
-    let lobe: Lobe<f32> = sea.configure().unwrap().local_lobe().cast();
+    let uniform = Table::of(&uniform(40_000, &mut StdRng::seed_from_u64(6)));
+    let lobe: Lobe<f32> = Parameters { whitecaps: true, ..sea }.configure().unwrap().local_lobe().cast();
     let both = |columns: Columns<'_>, level: Level, count: usize| {
         let [mut f, mut pdf] = [vec![0.0; count], vec![0.0; count]];
         columns.eval_on(level, &lobe, &mut f).unwrap();
@@ -208,9 +309,12 @@ fn rows_are_independent() {
     };
     for level in levels() {
         let whole = both(Columns::new(i, o, Some(n)).unwrap(), level, 40_000);
+        let drawn = samples(Sources::new(i, uniform.columns(), Some(n)).unwrap(), level, &lobe, 40_000);
         for length in (0..40).chain([8191, 8192, 8193]) {
             let of = |columns: Coordinates<'_>| columns.map(|x| x[7..7 + length].to_vec());
-            let [i, o, n] = [i, o, n].map(|c| Table(of(c)));
+            let [i, o, n, u] = [i, o, n, uniform.columns()].map(|c| Table(of(c)));
+            let sources = Sources::new(i.columns(), u.columns(), Some(n.columns())).unwrap();
+            assert!(samples(sources, level, &lobe, length) == drawn[7..7 + length], "{level:?}");
             let columns = Columns::new(i.columns(), o.columns(), Some(n.columns())).unwrap();
             let part = both(columns, level, length);
             assert!(part.iter().zip(&whole).all(|(part, whole)| *part == whole[7..7 + length]), "{level:?}");
@@ -241,7 +345,7 @@ fn finite_and_non_negative() {
     let pairs: Vec<_> = odd.iter().flat_map(|i| odd.iter().map(move |o| (*i, *o))).collect();
     let [i, o] = [pairs.iter().map(|p| p.0).collect(), pairs.iter().map(|p| p.1).collect()];
     let tilted: Vectors = pairs.iter().map(|_| direction(&mut rng).map(|x| x as f32)).collect();
-    let [ic, oc, nc] = [&i, &o, &tilted].map(Table::of);
+    let [ic, oc, nc, uc] = [&i, &o, &tilted, &uniform(i.len(), &mut rng)].map(Table::of);
     for sea in seas() {
         let lobe: Lobe<f32> = Parameters { whitecaps: true, ..sea }.configure().unwrap().local_lobe().cast();
         for normals in [None, Some(nc.columns())] {
@@ -251,6 +355,16 @@ fn finite_and_non_negative() {
                 columns.eval_on(level, &lobe, &mut f).unwrap();
                 let mut pdf = vec![f32::NAN; i.len()];
                 columns.pdf_on(level, &lobe, &mut pdf).unwrap();
+                let sources = Sources::new(ic.columns(), uc.columns(), normals).unwrap();
+                for (k, s) in samples(sources, level, &lobe, i.len()).into_iter().enumerate() {
+                    let [x, y, z] = wide(s.direction);
+                    // The axes of a normal within 1e-4 of the horizontal are not quite at right angles.
+                    let unit = (x * x + y * y + z * z - 1.0).abs() < 1e-3;
+                    let holds = s.f.is_finite() && s.f >= 0.0 && s.pdf.is_finite();
+                    let holds =
+                        holds && if s.pdf > 0.0 { unit } else { s.pdf == 0.0 && s.direction == [0.0; 3] };
+                    assert!(holds, "{level:?} {s:?} {:?} {:?} {sea:?}", i[k], tilted[k]);
+                }
                 for k in 0..i.len() {
                     let at = (level, i[k], o[k], tilted[k]);
                     let values = [f[k], pdf[k]];
@@ -282,6 +396,11 @@ fn bad_rows_are_named() {
     let lobe = Parameters::default().configure().unwrap().local_lobe().cast();
     let columns = Columns::new(good.columns(), good.columns(), None).unwrap();
     assert!(columns.eval(&lobe, &mut [0.0; 99]).is_err());
+    let one = Table::of(&vec![[0.0, 0.5, 1.0]; 100]);
+    let message = refused(Sources::new(good.columns(), one.columns(), None).unwrap_err());
+    assert!(message.contains("row 1: uniform = (0, 0.5, 1) is not numbers of [0, 1)"), "{message}");
+    let message = refused(Sources::new(good.columns(), short, None).unwrap_err());
+    assert!(message.contains("uniform holds 99 rows, expected 100"), "{message}");
     // As long as one may be and as another may not.
     let long = Table::of(&vec![[0.0, 0.600_05, 0.800_06]; 3]);
     assert!(Columns::new(long.columns(), long.columns(), None).is_ok());

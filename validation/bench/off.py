@@ -79,7 +79,7 @@ TERMS = [
 
 def main() -> None:
     """Prints the tables."""
-    found = [*scalar(), *traced(), terms()]
+    found = [*scalar(), *lanes(), *traced(), terms()]
     show(found)
     if "--docs" in sys.argv:
         write_page(found)
@@ -95,6 +95,15 @@ def scalar() -> list[Table]:
         switched, without = (instructions(case, code) for code in ("switched", "without"))
         rows.append([case, f"{switched:.0f}", f"{without:.0f}", f"{100 * (switched / without - 1):.1f} %"])
     return [Table("off", "Instructions of one scalar evaluation, float32", ["off", "switched off", "without it", "more"], rows)]
+
+
+def lanes() -> list[Table]:
+    """Instructions of a row in lanes; valgrind knows no AVX-512."""
+    if not shutil.which("valgrind"):
+        return []
+    rows = [[level, *(f"{instructions(level, operation):.0f}" for operation in ("eval", "pdf", "sample"))]
+            for level in ("portable", "avx2")]
+    return [Table("inlined", "Instructions of a row in lanes", ["", "eval", "pdf", "sample"], rows)]
 
 
 def instructions(case: str, code: str) -> float:

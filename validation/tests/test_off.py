@@ -1,5 +1,10 @@
-"""What is off costs nothing in traced kernels (the scalar core: `cargo xtask bench off`)."""
+"""What is off costs nothing in traced kernels (the scalar core: `cargo xtask bench off`); lanes are inlined."""
 
+import shutil
+
+import pytest
+
+from validation.bench.off import instructions
 from validation.support.plugin_calls import operations
 
 
@@ -19,3 +24,12 @@ def test_switches_leave_nothing_in_kernels(use):
     # Other surfaces are compiled only where they are asked for: numbers alone differ between winds and footprints.
     assert operations({"friction_velocity": 40.0, "footprint": 0.5}) == plain
     assert operations({"surface": "instance", "friction_velocity": 24.0})["eval"] > plain["eval"]
+
+
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="valgrind is not installed")
+@pytest.mark.parametrize(("operation", "most"), [("eval", 130), ("pdf", 90), ("sample", 290)])
+def test_lanes_are_inlined(operation, most):
+    """A function that is not inlined takes no vectors in registers: some ten times the instructions. Bounds are twice what there are."""
+    if "avx2" not in open("/proc/cpuinfo", encoding="utf-8").read():
+        pytest.skip("no AVX2")
+    assert instructions("avx2", operation) < most

@@ -1,8 +1,11 @@
 //! What is off costs nothing: the same evaluations with a term, by code that looks at its switch and finds it off, and by
 //! code compiled without it. `validation/bench/off.py` counts their instructions.
 //!
-//! `cargo run --release -p prob-water-measure --bin off -- CASE with|switched|without COUNT`
+//! `cargo run --release -p prob-water-measure --bin off -- CASE with|switched|without COUNT`, and, for lanes, which cost many
+//! times as much where one function is not inlined, `off LEVEL eval|pdf|sample COUNT`.
 
+use prob_water::batch::{Columns, SampleColumns, Sources};
+use prob_water::simd::Level;
 use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Wind};
 use std::hint::black_box;
 
@@ -33,10 +36,41 @@ fn run(count: usize, eval: impl Fn([f32; 3], [f32; 3]) -> f32) {
     black_box(total);
 }
 
+/// Rows to pass over in lanes.
+const ROWS: usize = 1000;
+
+/// `operation` of `count` rows in the vectors of a level.
+fn run_lanes(level: Level, operation: &str, count: usize) {
+    assert!(level.is_available());
+    let lobe: Lobe<f32> =
+        Parameters::default().configure().expect("the defaults are valid").local_lobe().cast();
+    let t: Vec<_> = (0..ROWS).map(|k| k as f32 / ROWS as f32).collect();
+    let (x, zero) = (t.iter().map(|t| 0.6 * t).collect::<Vec<_>>(), vec![0.0; ROWS]);
+    let z: Vec<_> = x.iter().map(|x| (1.0 - x * x).sqrt()).collect();
+    let columns = Columns::new([&x, &zero, &z], [&zero, &x, &z], None).expect("they are unit vectors");
+    let sources = Sources::new([&x, &zero, &z], [&t, &x, &t], None).expect("they are of [0, 1)");
+    let (mut out, mut whitecap) = ([0; 5].map(|_| vec![0.0; ROWS]), vec![false; ROWS]);
+    for _ in 0..count / ROWS {
+        let [x, y, z, pdf, f] = black_box(&mut out).each_mut().map(Vec::as_mut_slice);
+        match operation {
+            "eval" => columns.eval_on(level, black_box(&lobe), f),
+            "pdf" => columns.pdf_on(level, black_box(&lobe), pdf),
+            _ => {
+                let out = SampleColumns { to_observer: [x, y, z], pdf, f, whitecap: &mut whitecap };
+                sources.sample_on(level, black_box(&lobe), out)
+            }
+        }
+        .expect("as many rows");
+    }
+}
+
 fn main() {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
     let [case, code, count] = &arguments[..] else { panic!("CASE with|switched|without COUNT") };
     let count = count.parse().expect("COUNT is a number");
+    if let Some(level) = Level::ALL.into_iter().find(|level| level.name() == case) {
+        return run_lanes(level, code, count);
+    }
     // A wind in force whose bound is off.
     let mut parameters = Parameters { wind: Wind::FrictionVelocity(24.0), ..Parameters::default() };
     let on = code == "with";

@@ -3,7 +3,7 @@
 //! `cargo run --release -p prob-water-measure --bin throughput [-- REPEATS]`: every figure is measured
 //! `REPEATS` times (5 unless told), interleaved with the others.
 
-use prob_water::batch::Columns;
+use prob_water::batch::{Columns, SampleColumns, Sources};
 use prob_water::real::Vec3;
 use prob_water::simd::Level;
 use prob_water::{Lobe, Parameters, Scalar, SlopeMeasure};
@@ -74,7 +74,7 @@ fn add<T: Scalar + 'static>(to: &mut Vec<Candidate>, sea: &str, precision: &'sta
     one("sample", |lobe, (i, _, u)| _ = black_box(lobe.sample(*i, None, *u)));
 }
 
-/// Adds eval of a lobe in every kind of vector that the processor has.
+/// Adds eval, pdf and sample of a lobe in every kind of vector that the processor has.
 fn add_lanes(to: &mut Vec<Candidate>, sea: &str, lobe: Lobe<f32>) {
     let mut rng = StdRng::seed_from_u64(1);
     let mut directions = || -> [Vec<f32>; 3] {
@@ -82,16 +82,34 @@ fn add_lanes(to: &mut Vec<Candidate>, sea: &str, lobe: Lobe<f32>) {
         [0, 1, 2].map(|k| rows.iter().map(|v| v[k]).collect())
     };
     let (i, o) = (directions(), directions());
+    let u = [0; 3].map(|_| (0..PAIRS).map(|_| rng.random::<f32>()).collect::<Vec<_>>());
     for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
-        let (i, o) = (i.clone(), o.clone());
-        let run = move || {
-            let [i, o] = [&i, &o].map(|v| v.each_ref().map(Vec::as_slice));
-            let columns = Columns::new(i, o, None).expect("they are unit vectors");
-            let mut f = vec![0.0; PAIRS];
-            let pass = || columns.eval_on(level, black_box(&lobe), black_box(&mut f)).expect("as many rows");
-            rate(PASSES, pass) * PAIRS as f64
-        };
-        to.push((format!("eval {sea}"), LANES[level as usize], Box::new(run)));
+        for operation in ["eval", "pdf", "sample"] {
+            let inputs = [&i, &o, &u].map(Clone::clone);
+            let run = move || {
+                let [i, o, u] = inputs.each_ref().map(|v| v.each_ref().map(Vec::as_slice));
+                let columns = Columns::new(i, o, None).expect("they are unit vectors");
+                let draws = Sources::new(i, u, None).expect("they are of [0, 1)");
+                let mut out = [0; 5].map(|_| vec![0.0; PAIRS]);
+                let mut whitecap = vec![false; PAIRS];
+                let pass = || {
+                    let lobe = black_box(&lobe);
+                    let [x, y, z, pdf, f] = black_box(&mut out).each_mut().map(Vec::as_mut_slice);
+                    let whitecap = black_box(&mut whitecap).as_mut_slice();
+                    match operation {
+                        "eval" => columns.eval_on(level, lobe, f),
+                        "pdf" => columns.pdf_on(level, lobe, pdf),
+                        _ => {
+                            let to_observer = [x, y, z];
+                            draws.sample_on(level, lobe, SampleColumns { to_observer, pdf, f, whitecap })
+                        }
+                    }
+                    .expect("as many rows");
+                };
+                rate(PASSES, pass) * PAIRS as f64
+            };
+            to.push((format!("{operation} {sea}"), LANES[level as usize], Box::new(run)));
+        }
     }
 }
 

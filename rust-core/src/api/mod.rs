@@ -3,4 +3,6 @@
 pub mod batch;
 #[cfg(feature = "c-api")]
 mod c_api;
+mod columns;
 pub mod kernels;
+mod tasks;

@@ -264,7 +264,12 @@ impl<T: Real> Lobe<T> {
             let (sin, cos) = u[2].sin_cos_turns();
             return (cosine_direction(n, u[1], sin, cos), T::lt(zero, one));
         }
-        let frame = n.map(|n| self.facets.frame(n));
+        // Not `map`, here and below, whose closures would not be inlined.
+        #[allow(clippy::manual_map)]
+        let frame = match n {
+            Some(n) => Some(self.facets.frame(n)),
+            None => None,
+        };
         let local = match &frame {
             Some(axes) => [dot(axes[0], i), dot(axes[1], i), dot(axes[2], i)],
             None => self.facets.wind.vector_to_wind(i),
@@ -286,7 +291,7 @@ impl<T: Real> Lobe<T> {
         let (sin, cos) = T::select(from_rest, rest, u[2]).sin_cos_turns();
         let (h, valid) = self.facets.sample_half(local, &p, [u[1], u[2]], Draw { in_tail, rest, sin, cos });
         let h = match &frame {
-            Some([x, y, z]) => [0, 1, 2].map(|k| h[0].mul_add(x[k], h[1].mul_add(y[k], h[2] * z[k]))),
+            Some(axes) => from_axes(axes, h),
             None => {
                 let [x, y] = self.facets.wind.to_world([h[0], h[1]]);
                 [x, y, h[2]]
@@ -294,12 +299,30 @@ impl<T: Real> Lobe<T> {
         };
         // The source mirrored by the half vector.
         let c = two * dot(i, h);
-        let mut o = [0, 1, 2].map(|k| T::select(valid, c.mul_add(h[k], -i[k]), zero));
+        let mirrored = [c.mul_add(h[0], -i[0]), c.mul_add(h[1], -i[1]), c.mul_add(h[2], -i[2])];
+        let mut o = select(valid, mirrored, [zero; 3]);
         if parts.whitecaps {
-            let diffuse = cosine_direction(n, u[1], sin, cos);
-            o = [0, 1, 2].map(|k| T::select(whitecap, diffuse[k], o[k]));
+            o = select(whitecap, cosine_direction(n, u[1], sin, cos), o);
         }
         (o, whitecap)
+    }
+
+    /// What [`Lobe::sample`] gives, in every lane, without a branch: direction, density, f, and whether it was drawn from the
+    /// whitecaps.
+    #[inline(always)]
+    pub(crate) fn sample_lanes(
+        &self,
+        i: Vec3<T>,
+        n: Option<Vec3<T>>,
+        u: [T; 3],
+    ) -> (Vec3<T>, [T; 2], T::Mask) {
+        let zero = T::of(0.0);
+        let (direction, whitecap) = self.draw(i, n, u, Parts::ALL);
+        let pdf = self.pdf(i, direction, n);
+        let f = self.eval(i, direction, n);
+        let lost = T::lt(pdf, T::of(MIN_PDF));
+        let values = [T::select(lost, zero, pdf), T::select(lost, zero, f)];
+        (select(lost, [zero; 3], direction), values, whitecap)
     }
 }
 
@@ -328,6 +351,22 @@ impl<T: Scalar> Lobe<T> {
     }
 }
 
+/// `a` where `mask` holds, else `b`.
+#[inline(always)]
+fn select<T: Real>(mask: T::Mask, a: Vec3<T>, b: Vec3<T>) -> Vec3<T> {
+    [T::select(mask, a[0], b[0]), T::select(mask, a[1], b[1]), T::select(mask, a[2], b[2])]
+}
+
+/// The vector of components along three axes.
+#[inline(always)]
+fn from_axes<T: Real>([x, y, z]: &[Vec3<T>; 3], v: Vec3<T>) -> Vec3<T> {
+    [
+        v[0].mul_add(x[0], v[1].mul_add(y[0], v[2] * z[0])),
+        v[0].mul_add(x[1], v[1].mul_add(y[1], v[2] * z[1])),
+        v[0].mul_add(x[2], v[1].mul_add(y[2], v[2] * z[2])),
+    ]
+}
+
 /// A direction about `n`, in proportion to its cosine, of a number and of sine and cosine of its azimuth.
 #[inline(always)]
 fn cosine_direction<T: Real>(n: Option<Vec3<T>>, u: T, sin: T, cos: T) -> Vec3<T> {
@@ -341,5 +380,5 @@ fn cosine_direction<T: Real>(n: Option<Vec3<T>>, u: T, sin: T, cos: T) -> Vec3<T
     let b = n[0] * n[1] * a;
     let s = [(n[0] * n[0]).mul_add(a, one), b, -n[0]];
     let t = [b, (n[1] * n[1]).mul_add(a, one), -n[1]];
-    [0, 1, 2].map(|k| x.mul_add(s[k], y.mul_add(t[k], z * n[k])))
+    from_axes(&[s, t, n], [x, y, z])
 }
