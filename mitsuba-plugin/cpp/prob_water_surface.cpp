@@ -29,7 +29,7 @@ public:
             if (props.get<bool>(flag, false))
                 Throw("prob_water_surface: %s = true has no meaning here: normals are the waves'", flag);
         {
-            prob_water::Level level = m_mesh->level();
+            prob_water::StaticGeometry level = m_mesh->level();
             m_vertex_count = (uint32_t) level.footprints.size();
             m_face_count = (uint32_t) (level.faces.size() / 3);
             m_faces = dr::load<DynamicBuffer<UInt32>>(level.faces.data(), level.faces.size());

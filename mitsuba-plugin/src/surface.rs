@@ -6,8 +6,8 @@ use prob_water::{Error, Layout, Mesh, Surface};
 
 #[cxx::bridge(namespace = "prob_water")]
 mod ffi {
-    /// `prob_water::mesh::Level`.
-    struct Level {
+    /// `prob_water::mesh::StaticGeometry`.
+    struct StaticGeometry {
         texcoords: Vec<f32>,
         footprints: Vec<f32>,
         faces: Vec<u32>,
@@ -38,7 +38,7 @@ mod ffi {
         type SeaMesh;
         fn time(self: &SeaMesh) -> f64;
         fn components(self: &SeaMesh) -> u32;
-        fn level(self: &SeaMesh) -> Level;
+        fn level(self: &SeaMesh) -> StaticGeometry;
         /// Moves the waves to a time in s.
         fn set_time(self: &mut SeaMesh, time: f64) -> Result<()>;
         fn vertices(self: &SeaMesh) -> Vertices;
@@ -146,9 +146,9 @@ impl SeaMesh {
         self.mesh.water.parameters.components
     }
 
-    fn level(&self) -> ffi::Level {
+    fn level(&self) -> ffi::StaticGeometry {
         let level = self.mesh.level();
-        ffi::Level { texcoords: level.texcoords, footprints: level.footprints, faces: level.faces }
+        ffi::StaticGeometry { texcoords: level.texcoords, footprints: level.footprints, faces: level.faces }
     }
 
     fn set_time(&mut self, time: f64) -> Result<(), Error> {

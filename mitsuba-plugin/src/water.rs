@@ -23,7 +23,7 @@ pub enum Varied {
 /// A configured sea.
 pub struct Water {
     water: prob_water::Water,
-    /// The facets, or what draws directions for the sea from afar: traced code's numbers come from it.
+    /// The facets, or what draws directions for the sea with unresolved waves: traced code's numbers come from it.
     precise: Lobe<f64>,
     /// The same in Mitsuba's float32, for scalar variants.
     pub lobe: Lobe<f32>,

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p prob-water --example surface`
 
-use prob_water::surface::{Draws, Numbers};
+use prob_water::surface::{Draws, InstanceRng};
 use prob_water::{Layout, Mesh, Parameters, Surface, Wind};
 
 fn main() -> Result<(), prob_water::Error> {
@@ -15,7 +15,7 @@ fn main() -> Result<(), prob_water::Error> {
     }
     .configure()?;
     // Instance 0 of seed 1, at 2.5 s.
-    let sea = water.waves().surface(Numbers::new(Draws::Stratified, 1, 0), 2.5);
+    let sea = water.waves().surface(InstanceRng::new(Draws::Stratified, 1, 0), 2.5);
 
     println!("{:>4}  {:>8}  normal", "x, m", "height, m");
     for step in 0..8 {

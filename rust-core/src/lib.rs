@@ -16,10 +16,10 @@
 //! assert!((f - 0.1382).abs() < 1e-4, "{f}");
 //! ```
 //!
-//! One room, a folder, for each part of the work. A room uses only those above it in this list, checked by
+//! One module, a folder, for each part of the work. A module uses only those above it in this list, checked by
 //! `cargo xtask tidy`:
 //!
-//! | room | holds | equations |
+//! | module | holds | equations |
 //! | --- | --- | --- |
 //! | [`numeric`] | number types, quadrature, roots, sine and cosine of many angles | |
 //! | [`simd`] | the processor's vectors as a number type | |
@@ -52,11 +52,11 @@ pub mod surface;
 pub use api::batch;
 pub use api::kernels::{self, Kernels};
 pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, fresnel, sampling, shadowing, slopes};
-pub use config::{Across, Average, Parameters, Readings, Surface, Water, vocabulary};
+pub use config::{Average, OffPlaneModel, Parameters, Readings, Surface, Water, vocabulary};
 pub use empirical::{EmpiricalLobe, Estimate, FineGrid, Gridded, Table, planes, table, table_file};
 pub use error::{Error, Warning};
 pub use numeric::{Real, Scalar, real};
 pub use render::{EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, ensemble_lobe, grid, mesh};
-pub use sea::{Body, Wind, WindProfile, spectrum, whitecap, wind};
-pub use statistics::{Aim, Engagement, Ensemble, Exact, Presence, Proposal, Statistics, ensemble};
+pub use sea::{Salinity, Wind, WindProfile, spectrum, whitecap, wind};
+pub use statistics::{Aim, Engagement, Ensemble, Exact, Proposal, Statistics, WhitecapMode, ensemble};
 pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

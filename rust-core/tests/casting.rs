@@ -4,8 +4,8 @@ mod common;
 
 use common::water;
 use glam::DVec3;
-use prob_water::surface::Path;
-use prob_water::surface::{Draws, Numbers};
+use prob_water::surface::SurfaceRay;
+use prob_water::surface::{Draws, InstanceRng};
 use prob_water::{RealisedSurface, Surface};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -38,7 +38,7 @@ fn case(seed: u64) -> Case {
         p.wind_direction = rng.random_range(-180.0..180.0);
     });
     let waves = sea.waves();
-    let surface = waves.surface(Numbers::new(Draws::Random, seed, 0), rng.random_range(-1e3..1e3));
+    let surface = waves.surface(InstanceRng::new(Draws::Random, seed, 0), rng.random_range(-1e3..1e3));
     let direction = |rng: &mut StdRng, from_vertical: f64| {
         let (sin, cos) = from_vertical.to_radians().sin_cos();
         let (sp, cp) = rng.random_range(0.0..std::f64::consts::TAU).sin_cos();
@@ -129,7 +129,7 @@ struct Tally {
 fn compare(seed: u64) -> Tally {
     let case = case(seed);
     let mut tally = Tally { rays: 1, ..Tally::default() };
-    let mut path = Path::default();
+    let mut path = SurfaceRay::default();
     let highest = case.surface.highest();
     let entry = ((case.origin.z - highest) / -case.beam.z).max(0.0);
     let end = (case.origin.z + highest) / -case.beam.z;
@@ -169,7 +169,7 @@ fn compare(seed: u64) -> Tally {
     if observer.z <= 0.0 {
         return tally;
     }
-    let found = path.hides(&case.surface, from, observer);
+    let found = path.occludes(&case.surface, from, observer);
     let leave = case.distance.min((highest - from.z) / case.way.z);
     // The way starts on the water: look from where it has left it or has dipped.
     let opening = case.gap(from, case.way, 1e-6 * case.shortest);

@@ -3,11 +3,11 @@
 mod common;
 
 use common::worse;
-use prob_water::empirical::{Full, Moments};
+use prob_water::empirical::{Moments, ReferenceModel};
 use prob_water::planes::Planes;
 use prob_water::table::{Grid, Plan};
 use prob_water::{
-    Across, EmpiricalLobe, Engagement, Ensemble, Parameters, Presence, Surface, Table, Water, Wind,
+    EmpiricalLobe, Engagement, Ensemble, OffPlaneModel, Parameters, Surface, Table, Water, WhitecapMode, Wind,
 };
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -33,8 +33,8 @@ fn with(water: &Water, change: impl FnOnce(&mut Parameters)) -> Water {
 }
 
 /// The full model under a wind from the sea's own azimuth, counted from the plane of incidence.
-fn full(water: &Water) -> Full {
-    Full::new(water).unwrap()
+fn full(water: &Water) -> ReferenceModel {
+    ReferenceModel::new(water).unwrap()
 }
 
 fn radians(degrees: impl Iterator<Item = f64>) -> Vec<f64> {
@@ -105,7 +105,7 @@ fn nodes_follow_the_ray_cast() {
             .collect();
         let cast = with(&water, |p| (p.instances, p.seed) = (40_000, 7));
         let engagement = Engagement::far(incidence, 10e3, &directions, 100e3).unwrap();
-        let ensemble = Ensemble { presence: Presence::Drawn, ..Ensemble::new(&cast).unwrap() };
+        let ensemble = Ensemble { presence: WhitecapMode::Drawn, ..Ensemble::new(&cast).unwrap() };
         let samples = ensemble.sample(&[engagement], &|_| ()).unwrap();
         let peak = nodes[0].iter().map(|m| m.facets).fold(0.0, f64::max);
         let mut count = 0;
@@ -133,7 +133,7 @@ fn nodes_follow_the_ray_cast() {
 #[test]
 fn few_components_are_refused() {
     let water = with(&sea(24.0, 20.0, 100), |p| p.components = 3);
-    assert_eq!(Full::new(&water).unwrap_err().parameters(), ["components"]);
+    assert_eq!(ReferenceModel::new(&water).unwrap_err().parameters(), ["components"]);
     assert_eq!(Plan::new(&water.parameters, &Grid::default()).unwrap_err().parameters(), ["components"]);
 }
 
@@ -163,7 +163,7 @@ fn held_out(points: usize, seed: u64) -> HeldOut {
         let full = full(&water);
         let planes = planes(incidence.to_radians());
         let source = planes.source();
-        let lobes = [Across::Report, Across::Slopes]
+        let lobes = [OffPlaneModel::Report, OffPlaneModel::Slopes]
             .map(|across| EmpiricalLobe::new(&with(&water, |p| p.across = across), table).unwrap());
         let off = |lobe: &EmpiricalLobe, o: [f64; 3], m: &Moments| {
             lobe.estimate(source, o).mean / brdf(&water, m, source, o)[0] - 1.0
@@ -309,7 +309,8 @@ fn monte_carlo_dilutes_nothing_twice() {
             assert!((0.0..=1.0).contains(&drawn.over[0]) && drawn.mean_f_cos.is_nan());
         }
         let slopes =
-            EmpiricalLobe::new(&with(&water, |p| p.across = Across::Slopes), Table::standard()).unwrap();
+            EmpiricalLobe::new(&with(&water, |p| p.across = OffPlaneModel::Slopes), Table::standard())
+                .unwrap();
         let o = planes.across(sigma);
         let (drawn, formula) =
             (slopes.monte_carlo(planes.source(), o, draws, 1, &[]), slopes.estimate(planes.source(), o));
@@ -324,10 +325,10 @@ fn monte_carlo_dilutes_nothing_twice() {
 fn evaluation_holds_everywhere() {
     let mut rng = StdRng::seed_from_u64(5);
     for (w, footprint, across) in [
-        (2.0, 0.02, Across::Report),
-        (8.0, 0.15, Across::Report),
-        (62.9, 1.0, Across::Report),
-        (24.0, 0.3, Across::Slopes),
+        (2.0, 0.02, OffPlaneModel::Report),
+        (8.0, 0.15, OffPlaneModel::Report),
+        (62.9, 1.0, OffPlaneModel::Report),
+        (24.0, 0.3, OffPlaneModel::Slopes),
     ] {
         let water = with(&sea(w, 37.0, 1), |p| (p.footprint, p.across) = (Some(footprint), across));
         let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
@@ -372,7 +373,7 @@ fn evaluation_holds_everywhere() {
 /// The wind's azimuth counts from the plane of incidence: the whole turned gives the same, and so does its mirror image.
 #[test]
 fn only_the_angle_to_the_wind_counts() {
-    for across in [Across::Report, Across::Slopes] {
+    for across in [OffPlaneModel::Report, OffPlaneModel::Slopes] {
         let lobe = |direction: f64| {
             let water = with(&sea(16.0, direction, 1), |p| p.across = across);
             EmpiricalLobe::new(&water, Table::standard()).unwrap()
@@ -398,7 +399,7 @@ fn what_the_table_does_not_know() {
         ("components", |p| p.components = 6),
         ("depth", |p| p.depth = 10.0),
         ("fetch", |p| p.fetch = 1e4),
-        ("water", |p| p.water = prob_water::Body::Fresh),
+        ("water", |p| p.water = prob_water::Salinity::Fresh),
         ("slope_measure", |p| p.slope_measure = prob_water::SlopeMeasure::Slope),
         ("readings", |p| p.readings = prob_water::Readings::AsPrinted),
         ("whitecaps", |p| p.whitecaps = false),
@@ -466,7 +467,7 @@ fn tables_of_ones_own() {
 /// Far from the mirror in a light wind, where the mean square of Gaussian slopes is beyond any number.
 #[test]
 fn uncertainties_are_finite_far_from_the_mirror() {
-    for across in [Across::Report, Across::Slopes] {
+    for across in [OffPlaneModel::Report, OffPlaneModel::Slopes] {
         let water = with(&sea(2.0, 0.0, 50), |p| (p.ior, p.footprint, p.across) = (None, Some(0.02), across));
         let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
         for source in 0..36 {
@@ -495,7 +496,7 @@ fn quantiles_by_the_table() {
             surface: Surface::Empirical,
             footprint: Some(footprint),
             instances: 4000,
-            across: Across::Slopes,
+            across: OffPlaneModel::Slopes,
             ..Parameters::default()
         }
         .configure()

@@ -4,7 +4,7 @@ mod common;
 
 use common::{direction, rows, water};
 use prob_water::statistics::Sighting;
-use prob_water::{Engagement, Ensemble, Presence, Statistics, Surface, Water};
+use prob_water::{Engagement, Ensemble, Statistics, Surface, Water, WhitecapMode};
 
 /// The base scenario of the report's section 8, with a number of instances.
 fn base(friction_velocity: f64, instances: u64) -> Water {
@@ -33,7 +33,7 @@ fn statistics(ensemble: &Ensemble, engagement: &Engagement) -> Vec<Statistics> {
 fn base_scenario_of_the_reference() {
     for rows in rows("scenario_base").chunk_by(|a, b| a[0] == b[0]) {
         let mut ensemble = Ensemble::new(&base(rows[0][0], 100_000)).unwrap();
-        ensemble.presence = Presence::Expected;
+        ensemble.presence = WhitecapMode::Expected;
         let angles: Vec<f64> = rows.iter().map(|r| r[5]).collect();
         let engagement = in_plane(rows[0][4], &angles);
         let samples = ensemble.sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
@@ -64,7 +64,7 @@ fn base_scenario_of_the_reference() {
 fn converged_maxima() {
     let peak = |water: &Water, incidence: f64, angles: &[f64]| {
         let mut ensemble = Ensemble::new(water).unwrap();
-        ensemble.presence = Presence::Expected;
+        ensemble.presence = WhitecapMode::Expected;
         let means = statistics(&ensemble, &in_plane(incidence, angles));
         let best = (0..angles.len()).max_by(|a, b| means[*a].mean.total_cmp(&means[*b].mean)).unwrap();
         (means[best].mean, means[best].sem, angles[best])
@@ -155,8 +155,8 @@ fn compare_options(w: f64) {
         let variance = |o: usize| means.iter().map(|m| (m[o] - mean(o)).powi(2)).sum::<f64>() / (n - 1.0);
         [0, 1, 2].map(|o| (mean(o), variance(o)))
     };
-    let plain = runs(false, Presence::Drawn);
-    let calm = runs(true, Presence::Expected);
+    let plain = runs(false, WhitecapMode::Drawn);
+    let calm = runs(true, WhitecapMode::Expected);
     for (plain, calm) in plain.iter().zip(calm) {
         let error = ((plain.1 + calm.1) / 40.0).sqrt();
         assert!((plain.0 - calm.0).abs() < 4.0 * error, "w* {w}: {plain:?} and {calm:?}");

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{direction, dot, water, worse};
-use prob_water::{Average, Engagement, Ensemble, EnsembleLobe, Exact, Presence, Surface, Water};
+use prob_water::{Average, Engagement, Ensemble, EnsembleLobe, Exact, Surface, Water, WhitecapMode};
 
 fn sea(w: f64, change: impl FnOnce(&mut prob_water::Parameters)) -> Water {
     water(w, |p| {
@@ -42,7 +42,7 @@ fn against_the_ray_cast(w: f64, incidence: f64, instances: u64) -> f64 {
     let report = EnsembleLobe::new(&averaged(&water, Average::Report)).unwrap();
     let views = views(incidence);
     let engagement = Engagement::far(incidence, 10e3, &views, 1e6).unwrap();
-    let ensemble = Ensemble { presence: Presence::Expected, ..Ensemble::new(&water).unwrap() };
+    let ensemble = Ensemble { presence: WhitecapMode::Expected, ..Ensemble::new(&water).unwrap() };
     let samples = ensemble.sample(std::slice::from_ref(&engagement), &|_| ()).unwrap();
     let all: Vec<_> = (0..views.len()).map(|o| samples.statistics(0, o, &[]).unwrap()).collect();
     let peak = all.iter().map(|s| s.mean_f_cos).fold(0.0, f64::max);

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{direction, dot, water};
-use prob_water::surface::{Draws, Numbers};
+use prob_water::surface::{Draws, InstanceRng};
 use prob_water::{Engagement, Ensemble, Exact, Surface, Water, whitecap};
 use rayon::prelude::*;
 
@@ -56,7 +56,7 @@ fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec
     let batch = |b: u64| {
         let mut sums = zero();
         for instance in b * BATCH..(b + 1) * BATCH {
-            let mut numbers = Numbers::new(Draws::Random, 1, instance);
+            let mut numbers = InstanceRng::new(Draws::Random, 1, instance);
             let chance = numbers.next();
             let point = waves.surface(numbers, 0.0).point([0.0; 2]);
             let n = point.normal();

@@ -3,7 +3,9 @@
 mod common;
 
 use common::{UP, direction};
-use prob_water::{Engagement, Ensemble, Error, Exact, Parameters, Presence, Proposal, Surface, Water, Wind};
+use prob_water::{
+    Engagement, Ensemble, Error, Exact, Parameters, Proposal, Surface, Water, WhitecapMode, Wind,
+};
 
 fn sea(speed: f64, footprint: f64, change: impl FnOnce(&mut Parameters)) -> Water {
     let mut p = Parameters {
@@ -52,7 +54,9 @@ fn narrow_facets_are_met() {
 #[test]
 fn importance_is_unbiased() {
     let engagement = observers();
-    for (components, presence) in [(4, Presence::Drawn), (5, Presence::Expected), (12, Presence::Drawn)] {
+    for (components, presence) in
+        [(4, WhitecapMode::Drawn), (5, WhitecapMode::Expected), (12, WhitecapMode::Drawn)]
+    {
         let mut sums = [0.0; 2];
         let mut exact = 0.0;
         for seed in 0..40 {

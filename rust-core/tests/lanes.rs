@@ -1,7 +1,7 @@
 //! Lanes of float32 against the float64 text, for every kind of vector that this processor has.
 
 use prob_water::batch::{Columns, Coordinates, Rows, SampleColumns, Sources};
-use prob_water::simd::Level;
+use prob_water::simd::SimdLevel;
 use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::f64::consts::TAU;
@@ -22,7 +22,7 @@ impl Table {
 }
 
 /// Draws of every row, in the vectors of a level.
-fn samples(sources: Sources<'_>, level: Level, lobe: &Lobe<f32>, count: usize) -> Vec<Sample<f32>> {
+fn samples(sources: Sources<'_>, level: SimdLevel, lobe: &Lobe<f32>, count: usize) -> Vec<Sample<f32>> {
     let mut numbers = [0; 5].map(|_| vec![f32::NAN; count]);
     let mut whitecap = vec![false; count];
     let [x, y, z, pdf, f] = numbers.each_mut().map(Vec::as_mut_slice);
@@ -48,8 +48,8 @@ fn uniform(count: usize, rng: &mut StdRng) -> Vectors {
     (0..count).map(|_| [number(f32::EPSILON / 2.0), number(0.0), number(0.0)]).collect()
 }
 
-fn levels() -> impl Iterator<Item = Level> {
-    Level::ALL.into_iter().filter(|level| level.is_available())
+fn levels() -> impl Iterator<Item = SimdLevel> {
+    SimdLevel::ALL.into_iter().filter(|level| level.is_available())
 }
 
 /// Seas with every switch on and off and winds from calm to a hurricane.
@@ -301,7 +301,7 @@ fn rows_are_independent() {
     let [i, o, n] = tables.each_ref().map(Table::columns);
     let uniform = Table::of(&uniform(40_000, &mut StdRng::seed_from_u64(6)));
     let lobe: Lobe<f32> = Parameters { whitecaps: true, ..sea }.configure().unwrap().local_lobe().cast();
-    let both = |columns: Columns<'_>, level: Level, count: usize| {
+    let both = |columns: Columns<'_>, level: SimdLevel, count: usize| {
         let [mut f, mut pdf] = [vec![0.0; count], vec![0.0; count]];
         columns.eval_on(level, &lobe, &mut f).unwrap();
         columns.pdf_on(level, &lobe, &mut pdf).unwrap();
@@ -321,7 +321,7 @@ fn rows_are_independent() {
         }
     }
     // As many rows of vectors, in the level that is detected.
-    let [f, pdf] = both(Columns::new(i, o, Some(n)).unwrap(), Level::detect(), 40_000);
+    let [f, pdf] = both(Columns::new(i, o, Some(n)).unwrap(), SimdLevel::detect(), 40_000);
     for threads in [1, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let rows = Rows::new(&all[0], &all[1], Some(&all[2])).unwrap();

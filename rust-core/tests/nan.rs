@@ -4,8 +4,8 @@ use prob_water::batch::{Columns, Rows};
 use prob_water::brdf::Parts;
 use prob_water::real::Vec3;
 use prob_water::{
-    Across, Average, EmpiricalLobe, EnsembleLobe, Fresnel, InstanceLobe, Lobe, Parameters, Readings, Scalar,
-    SlopeMeasure, Surface, Table, Water,
+    Average, EmpiricalLobe, EnsembleLobe, Fresnel, InstanceLobe, Lobe, OffPlaneModel, Parameters, Readings,
+    Scalar, SlopeMeasure, Surface, Table, Water,
 };
 
 const UP: Vec3<f64> = [0.0, 0.0, 1.0];
@@ -106,7 +106,7 @@ fn seas_from_afar() {
             }
         }
     }
-    for across in [Across::Report, Across::Slopes] {
+    for across in [OffPlaneModel::Report, OffPlaneModel::Slopes] {
         let lobe =
             EmpiricalLobe::new(&sea(Surface::Empirical, |p| p.across = across), Table::standard()).unwrap();
         for [i, o] in pairs() {

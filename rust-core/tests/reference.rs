@@ -5,7 +5,7 @@ mod common;
 use common::rows;
 use prob_water::spectrum::Spectrum;
 use prob_water::{
-    Body, Fresnel, Lobe, Parameters, Readings, RealisedSurface, SlopeMeasure, Surface, Wind, slopes,
+    Fresnel, Lobe, Parameters, Readings, RealisedSurface, Salinity, SlopeMeasure, Surface, Wind, slopes,
     whitecap, wind,
 };
 
@@ -63,7 +63,7 @@ fn whitecaps() {
 fn spectra() {
     for r in rows("spectrum") {
         let wind = Wind::FrictionVelocity(r[0]).profile().unwrap();
-        let water = if r[1] == 1.0 { Body::Fresh } else { Body::Ocean };
+        let water = if r[1] == 1.0 { Salinity::Fresh } else { Salinity::Ocean };
         let s = Spectrum::new(&wind, water, r[2], r[3]);
         for (found, expected) in
             [s.frequency(r[4]), s.density(r[4]), s.k0, s.k1, s.k2, s.k_min].into_iter().zip(&r[5..])

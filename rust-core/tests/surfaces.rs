@@ -33,7 +33,7 @@ fn others_are_refused() {
         ("Water::lobe", &[Surface::Flat], |w| w.lobe().map(drop)),
         ("Ensemble", DRAWN, |w| Ensemble::new(w).map(drop)),
         ("Exact", DRAWN, |w| Exact::new(w).map(drop)),
-        ("Full", DRAWN, |w| prob_water::empirical::Full::new(w).map(drop)),
+        ("ReferenceModel", DRAWN, |w| prob_water::empirical::ReferenceModel::new(w).map(drop)),
         ("InstanceLobe", &[Surface::Instance], |w| InstanceLobe::new(w).map(drop)),
         ("InstanceLobe, fading", &[Surface::Instance], |w| InstanceLobe::fading(w).map(drop)),
         ("EnsembleLobe", &[Surface::Ensemble], |w| EnsembleLobe::new(w).map(drop)),

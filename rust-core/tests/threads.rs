@@ -5,7 +5,8 @@ mod common;
 use common::{direction, water};
 use prob_water::brdf::up;
 use prob_water::{
-    Across, EmpiricalLobe, EnsembleLobe, FacetTable, InstanceLobe, Parameters, Surface, Table, Water, Wind,
+    EmpiricalLobe, EnsembleLobe, FacetTable, InstanceLobe, OffPlaneModel, Parameters, Surface, Table, Water,
+    Wind,
 };
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -80,8 +81,9 @@ fn facets_by_footprint() {
 
 #[test]
 fn empirical() {
-    let sea =
-        Parameters { across: Across::Slopes, ..drawn(Surface::Empirical).parameters }.configure().unwrap();
+    let sea = Parameters { across: OffPlaneModel::Slopes, ..drawn(Surface::Empirical).parameters }
+        .configure()
+        .unwrap();
     let lobe = EmpiricalLobe::new(&sea, Table::standard()).unwrap();
     same(|(i, o, _)| {
         let estimate = lobe.estimate(*i, *o);

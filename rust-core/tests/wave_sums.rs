@@ -3,14 +3,14 @@
 mod common;
 
 use common::worse;
-use prob_water::simd::Level;
+use prob_water::simd::SimdLevel;
 use prob_water::surface::Component;
 use prob_water::surface::Point;
 use prob_water::{Draws, Ensemble, Parameters, RealisedSurface, Surface, WaveSums, Wind};
 use std::f64::consts::TAU;
 
-fn levels() -> impl Iterator<Item = Level> {
-    Level::ALL.into_iter().filter(|level| level.is_available())
+fn levels() -> impl Iterator<Item = SimdLevel> {
+    SimdLevel::ALL.into_iter().filter(|level| level.is_available())
 }
 
 /// Places within 10 km.

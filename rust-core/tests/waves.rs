@@ -4,7 +4,7 @@ mod common;
 
 use common::water;
 use prob_water::spectrum::spreading;
-use prob_water::surface::{Draws, Numbers, Waves};
+use prob_water::surface::{Draws, InstanceRng, Waves};
 use prob_water::{Surface, Water, slopes};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -52,7 +52,7 @@ fn mean<const N: usize>(
     let values: Vec<[f64; N]> = (0..instances)
         .into_par_iter()
         .map(|i| {
-            let mut numbers = Numbers::new(draws, 9, i);
+            let mut numbers = InstanceRng::new(draws, 9, i);
             numbers.next();
             of(waves.surface(numbers, 0.0).point([0.0; 2]))
         })
@@ -108,7 +108,7 @@ fn derivatives_and_bounds() {
     let water = sea(24.0, 0.15, 20);
     let waves = water.waves();
     for instance in 0..50 {
-        let at = |time| waves.surface(Numbers::new(Draws::Random, 2, instance), time);
+        let at = |time| waves.surface(InstanceRng::new(Draws::Random, 2, instance), time);
         let surface = at(3.0);
         let [x, y] = [17.0 + instance as f64, -40.0];
         let point = surface.point([x, y]);
@@ -151,7 +151,7 @@ fn waves_run_before_the_wind() {
 fn instances_are_nested_and_calm_is_flat() {
     let list = |m| -> Vec<_> {
         let waves = sea(8.0, 0.15, m).waves();
-        waves.components(Numbers::new(Draws::Random, 1, 4)).collect()
+        waves.components(InstanceRng::new(Draws::Random, 1, 4)).collect()
     };
     let (few, many) = (list(5), list(7));
     for (a, b) in few.iter().zip(&many) {
@@ -161,7 +161,7 @@ fn instances_are_nested_and_calm_is_flat() {
     for w in [0.0, 0.3] {
         let waves = sea(w, 0.15, 5).waves();
         assert!(waves.is_empty());
-        let point = waves.surface(Numbers::new(Draws::Random, 1, 0), 5.0).point([3.0, 4.0]);
+        let point = waves.surface(InstanceRng::new(Draws::Random, 1, 0), 5.0).point([3.0, 4.0]);
         assert_eq!((point.height, point.normal()), (0.0, [0.0, 0.0, 1.0]));
     }
 }

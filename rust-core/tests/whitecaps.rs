@@ -4,8 +4,8 @@ mod common;
 
 use common::water;
 use prob_water::statistics::Samples;
-use prob_water::surface::{Draws, Numbers};
-use prob_water::{Aim, Engagement, Ensemble, Presence, Surface, Water, whitecap};
+use prob_water::surface::{Draws, InstanceRng};
+use prob_water::{Aim, Engagement, Ensemble, Surface, Water, WhitecapMode, whitecap};
 use rayon::prelude::*;
 
 fn sea(w: f64, footprint: f64, components: u32) -> Water {
@@ -22,7 +22,7 @@ fn over_eq_51(sea: &Water, instances: u64) -> [f64; 2] {
     const BATCH: u64 = 1000;
     let (w, waves) = (sea.wind.friction_velocity, sea.waves());
     let probability = |instance| {
-        let mut numbers = Numbers::new(Draws::Random, 9, instance);
+        let mut numbers = InstanceRng::new(Draws::Random, 9, instance);
         numbers.next();
         whitecap::probability(w, 100.0 * waves.surface(numbers, 0.0).point([0.0; 2]).acceleration)
     };
@@ -78,7 +78,7 @@ fn whitecaps_follow_the_footprint() {
 }
 
 /// A strong wind's whitecaps under a vertical beam, at times in s.
-fn under_a_beam(times: &[f64], presence: Presence, instances: u64) -> Samples {
+fn under_a_beam(times: &[f64], presence: WhitecapMode, instances: u64) -> Samples {
     let mut water = sea(56.0, 0.15, 5);
     water.parameters.instances = instances;
     let ensemble = Ensemble { presence, ..Ensemble::new(&water).unwrap() };
@@ -93,7 +93,8 @@ fn under_a_beam(times: &[f64], presence: Presence, instances: u64) -> Samples {
 #[test]
 fn one_random_number_serves_an_instance_at_all_times() {
     let times: Vec<f64> = (0..200).map(|t| 0.25 * f64::from(t)).collect();
-    let [drawn, expected] = [Presence::Drawn, Presence::Expected].map(|p| under_a_beam(&times, p, 2000));
+    let [drawn, expected] =
+        [WhitecapMode::Drawn, WhitecapMode::Expected].map(|p| under_a_beam(&times, p, 2000));
     // The lowest probability with a whitecap and the highest without, of every instance; and how often each was seen.
     let (mut lowest, mut highest, mut seen) = (vec![1.0f64; 2000], vec![0.0f64; 2000], [0, 0]);
     for time in 0..times.len() {
@@ -119,7 +120,8 @@ fn one_random_number_serves_an_instance_at_all_times() {
 #[test]
 fn whitecaps_do_not_last() {
     let times = [0.0, 0.1, 0.2, 0.5, 1.0];
-    let [drawn, expected] = [Presence::Drawn, Presence::Expected].map(|p| under_a_beam(&times, p, 100_000));
+    let [drawn, expected] =
+        [WhitecapMode::Drawn, WhitecapMode::Expected].map(|p| under_a_beam(&times, p, 100_000));
     let at = |samples: &Samples, time: usize| -> Vec<f64> {
         samples.of(time, 0).unwrap().map(|s| s.hit.whitecap).collect()
     };

@@ -48,7 +48,7 @@ The commands of prob-water, each run as `cargo xtask <command>`:
   equations [--check]
                     write the index of the report's equations in ARCHITECTURE.md from rust-core's comments, or only check it
   examples          run the examples of the library, rust-core/examples
-  tidy              check rust-core's source: rooms use only those above them, no circles, no public item without a comment;
+  tidy              check rust-core's source: modules use only those above them, no circles, no public item without a comment;
                     validation's: folders use only those above them, no circles, no test is imported;
                     and that no file of the repository is long without a reason
   c-test            compile and run the C programs of rust-core/tests/c and rust-core/examples

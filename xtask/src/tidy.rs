@@ -1,4 +1,4 @@
-//! What the source of this project keeps to and no compiler checks: the order of rust-core's rooms and of validation's
+//! What the source of this project keeps to and no compiler checks: the order of rust-core's modules and of validation's
 //! folders, no circles within one, no long file without a reason, no public item without a comment.
 //!
 //! Lines are read, not syntax: comments, literals and tests are blanked first, and paths are found by `crate::` and
@@ -24,7 +24,7 @@ const LONG: [(&str, &str); 5] = [
     ("rust-core/tests/empirical.rs", "tests of one model, which share their seas and what they compare with"),
 ];
 
-/// Uses that close a circle within a room: who uses whom, and why it stays.
+/// Uses that close a circle within a module: who uses whom, and why it stays.
 const CIRCLES: [(&str, &str, &str); 1] = [(
     "simd/real.rs",
     "simd/double_float.rs",
@@ -100,9 +100,10 @@ fn too_long(lengths: &[(String, usize)], reasons: &[(&str, &str)]) -> Vec<String
 }
 
 fn in_source(files: &[File], circles: &[(&str, &str, &str)]) -> Vec<String> {
-    let rooms = files.iter().find(|file| file.path == "lib.rs").map_or(Vec::new(), |file| rooms(&file.text));
+    let modules =
+        files.iter().find(|file| file.path == "lib.rs").map_or(Vec::new(), |file| modules(&file.text));
     let mut faults = Vec::new();
-    // Of each use of a file by another in its room: user, line, used.
+    // Of each use of a file by another in its module: user, line, used.
     let mut uses: Vec<(&str, usize, String)> = Vec::new();
     for file in files {
         let code = code(&file.text);
@@ -110,27 +111,27 @@ fn in_source(files: &[File], circles: &[(&str, &str, &str)]) -> Vec<String> {
         if file.path == "lib.rs" {
             continue;
         }
-        let (room, name) = file.path.split_once('/').unwrap_or(("", &file.path));
-        let rank = rooms.iter().position(|known| known == room);
-        if (rank.is_none() && !room.is_empty()) || name.contains('/') {
-            faults.push(format!("{SOURCE}/{}:1: not in a room of lib.rs's table", file.path));
+        let (module, name) = file.path.split_once('/').unwrap_or(("", &file.path));
+        let rank = modules.iter().position(|known| known == module);
+        if (rank.is_none() && !module.is_empty()) || name.contains('/') {
+            faults.push(format!("{SOURCE}/{}:1: not in a module of lib.rs's table", file.path));
         }
-        for (line, target) in targets(&code, room, name, &rooms) {
+        for (line, target) in targets(&code, module, name, &modules) {
             let (first, rest) = target.split_once("::").unwrap_or((&target, ""));
             let place = format!("{SOURCE}/{}:{line}", file.path);
-            match rooms.iter().position(|known| known == first) {
-                // What lies outside of the rooms stands above all of them.
+            match modules.iter().position(|known| known == first) {
+                // What lies outside of the modules stands above all of them.
                 Some(used) if rank.is_none_or(|own| used > own) => {
-                    let own = if room.is_empty() { name } else { room };
-                    faults.push(format!("{place}: uses room `{first}`, which stands below `{own}`"));
+                    let own = if module.is_empty() { name } else { module };
+                    faults.push(format!("{place}: uses module `{first}`, which stands below `{own}`"));
                 }
                 Some(_) => {}
                 None if files.iter().any(|file| file.path == format!("{first}.rs")) => {}
-                None => faults.push(format!("{place}: `crate::{first}` is the facade: name its room")),
+                None => faults.push(format!("{place}: `crate::{first}` is the facade: name its module")),
             }
-            let used = format!("{room}/{}.rs", rest.split("::").next().unwrap_or(""));
+            let used = format!("{module}/{}.rs", rest.split("::").next().unwrap_or(""));
             let is_file = files.iter().any(|file| file.path == used);
-            if first == room && name != "mod.rs" && used != file.path && is_file {
+            if first == module && name != "mod.rs" && used != file.path && is_file {
                 uses.push((&file.path, line, used));
             }
         }
@@ -163,15 +164,15 @@ fn in_circles(directory: &str, uses: &[(&str, usize, String)]) -> Vec<String> {
     faults
 }
 
-/// The rooms in their order, from the table in the head of lib.rs.
-fn rooms(lib: &str) -> Vec<String> {
+/// The modules in their order, from the table in the head of lib.rs.
+fn modules(lib: &str) -> Vec<String> {
     let row = |line: &str| Some(line.strip_prefix("//! | [`")?.split_once("`]")?.0.to_string());
     lib.lines().filter_map(row).collect()
 }
 
 /// The lines on which code names something of the crate, and its path from there. In a module within a file `super::` is
-/// that file; it is taken for the room all the same.
-fn targets(code: &str, room: &str, name: &str, rooms: &[String]) -> Vec<(usize, String)> {
+/// that file; it is taken for the module all the same.
+fn targets(code: &str, module: &str, name: &str, modules: &[String]) -> Vec<(usize, String)> {
     let mut targets = Vec::new();
     for root in ["crate::", "super::"] {
         for (at, _) in code.match_indices(root) {
@@ -183,13 +184,13 @@ fn targets(code: &str, room: &str, name: &str, rooms: &[String]) -> Vec<(usize, 
             let line = 1 + code[..at].matches('\n').count();
             for path in paths {
                 let inner = path.strip_prefix("super::").unwrap_or(&path);
-                let to_a_room = rooms.iter().any(|room| inner.split("::").next() == Some(room));
+                let to_a_module = modules.iter().any(|module| inner.split("::").next() == Some(module));
                 if root == "crate::" {
                     targets.push((line, path));
-                } else if to_a_room && (inner.len() < path.len() || name == "mod.rs") {
+                } else if to_a_module && (inner.len() < path.len() || name == "mod.rs") {
                     targets.push((line, inner.into()));
-                } else if !room.is_empty() {
-                    targets.push((line, format!("{room}::{inner}")));
+                } else if !module.is_empty() {
+                    targets.push((line, format!("{module}::{inner}")));
                 }
             }
         }
@@ -241,7 +242,8 @@ fn undocumented(file: &File, code: &str, files: &[File]) -> Vec<String> {
         } else if !line.is_empty() && !line.starts_with("//") {
             let module = code.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';'));
             let has_head = module.is_some_and(|module| {
-                let folder = file.path.rsplit_once('/').map_or(String::new(), |(room, _)| format!("{room}/"));
+                let folder =
+                    file.path.rsplit_once('/').map_or(String::new(), |(module, _)| format!("{module}/"));
                 let paths = [format!("{folder}{module}.rs"), format!("{folder}{module}/mod.rs")];
                 files.iter().any(|file| paths.contains(&file.path) && file.text.starts_with("//!"))
             });
@@ -327,7 +329,7 @@ mod tests {
     const LIB: &str =
         "//! | [`low`] | a | |\n//! | [`high`] | b | |\n/// C.\npub mod low;\n/// D.\npub mod high;\n";
 
-    /// The faults of a crate of the two rooms above and these files.
+    /// The faults of a crate of the two modules above and these files.
     fn faults(files: &[(&str, &str)]) -> Vec<String> {
         let file = |(path, text): &(&str, &str)| File { path: path.to_string(), text: text.to_string() };
         let files: Vec<File> = [("lib.rs", LIB), ("error.rs", "")].iter().chain(files).map(file).collect();
@@ -336,7 +338,7 @@ mod tests {
 
     #[test]
     fn imports_follow_the_table() {
-        let below = "rust-core/src/low/a.rs:2: uses room `high`, which stands below `low`";
+        let below = "rust-core/src/low/a.rs:2: uses module `high`, which stands below `low`";
         for import in ["use crate::high::X;", "use crate::{error::E, high};", "use super::super::high::X;"] {
             assert_eq!(faults(&[("low/a.rs", &format!("\n{import}\n"))]), [below], "{import}");
         }
@@ -345,7 +347,7 @@ mod tests {
         assert_eq!(faults(&[("error.rs", "use crate::low::X;")]).len(), 1);
         assert_eq!(
             faults(&[("other/mod.rs", "")]),
-            ["rust-core/src/other/mod.rs:1: not in a room of lib.rs's table"]
+            ["rust-core/src/other/mod.rs:1: not in a module of lib.rs's table"]
         );
         assert!(faults(&[("high/a.rs", "use crate::Lobe;")])[0].contains(":1: `crate::Lobe` is the facade"));
         let allowed =

@@ -6,7 +6,9 @@ use crate::empirical_table;
 use crate::model::{Flag, Model};
 use crate::toml_file::Document;
 use prob_water::Exact;
-use prob_water::{Across, Draws, EmpiricalLobe, Engagement, Ensemble, Error, Parameters, Surface, Water};
+use prob_water::{
+    Draws, EmpiricalLobe, Engagement, Ensemble, Error, OffPlaneModel, Parameters, Surface, Water,
+};
 use std::path::{Path, PathBuf};
 
 /// What a file describes; checked.
@@ -91,8 +93,8 @@ impl Scenario {
             own_table = model.table.as_ref().map(|item| settings::table(item, path)).transpose()?;
             let table = (table, own_table.as_deref());
             let lobe = by_table(&model, &water, flags, table)?;
-            let slopes = Parameters { across: Across::Slopes, ..water.parameters };
-            let slopes = (water.parameters.across == Across::Report)
+            let slopes = Parameters { across: OffPlaneModel::Slopes, ..water.parameters };
+            let slopes = (water.parameters.across == OffPlaneModel::Report)
                 .then(|| slopes.configure().map(|water| by_table(&model, &water, flags, table)))
                 .transpose()
                 .map_err(|e| model.refuse(flags, &e, None))?

@@ -1,7 +1,7 @@
 //! The keys that are a scenario's own: what is asked about the sea.
 
 use crate::toml_file::Item;
-use prob_water::{Draws, Presence, Proposal, Surface};
+use prob_water::{Draws, Proposal, Surface, WhitecapMode};
 use std::path::{Path, PathBuf};
 
 /// Their names.
@@ -38,7 +38,7 @@ pub struct Settings {
     /// Which seas are drawn.
     pub proposal: Proposal,
     /// How whitecaps take part.
-    pub presence: Presence,
+    pub presence: WhitecapMode,
 }
 
 impl Settings {
@@ -69,13 +69,13 @@ impl Settings {
                 TABLE => (), // Model's
                 _ => {
                     settings.presence =
-                        item.choice(&[("drawn", Presence::Drawn), ("expected", Presence::Expected)])?;
+                        item.choice(&[("drawn", WhitecapMode::Drawn), ("expected", WhitecapMode::Expected)])?;
                 }
             }
         }
         let meaningless = |item: &&Item| match item.name {
             "draws" => settings.proposal != Proposal::Auto,
-            "whitecap_presence" => settings.presence != Presence::Drawn,
+            "whitecap_presence" => settings.presence != WhitecapMode::Drawn,
             _ => false,
         };
         match items.iter().find(meaningless).filter(|_| settings.source == Source::Exact) {

@@ -2,7 +2,9 @@
 
 use crate::{refuse, succeed};
 use exr::prelude::*;
-use prob_water::{Across, Average, Body, Fresnel, Parameters, Readings, SlopeMeasure, Surface, Wind};
+use prob_water::{
+    Average, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeMeasure, Surface, Wind,
+};
 use std::fs;
 use std::path::Path;
 
@@ -49,7 +51,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         footprint: Some(0.21),
         surface,
         average: Average::Report,
-        across: Across::Slopes,
+        across: OffPlaneModel::Slopes,
         components: 7,
         instances: 30,
         seed: 9_007_199_254_740_991,
@@ -58,7 +60,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         fetch: 7654.321,
         wavelength: 1.064,
         ior: Some(4.0 / 3.0),
-        water: Body::Fresh,
+        water: Salinity::Fresh,
         fresnel: Fresnel::Exact,
         slope_measure: SlopeMeasure::Slope,
         readings: Readings::AsPrinted,

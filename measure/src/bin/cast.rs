@@ -2,8 +2,8 @@
 //! compares it with a mesh.
 
 use glam::DVec3;
-use prob_water::surface::Path;
-use prob_water::surface::{Draws, Numbers};
+use prob_water::surface::SurfaceRay;
+use prob_water::surface::{Draws, InstanceRng};
 use prob_water::{Parameters, RealisedSurface, Surface, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;
@@ -20,7 +20,8 @@ fn main() {
             ..Parameters::default()
         };
         let water = water.configure().expect("the parameters are valid");
-        let sea = RealisedSurface::new(water.waves().components(Numbers::new(Draws::Stratified, 1, 0)), 0.0);
+        let sea =
+            RealisedSurface::new(water.waves().components(InstanceRng::new(Draws::Stratified, 1, 0)), 0.0);
         // From 10 m, 2 to 60 degrees below the horizon.
         let mut rng = StdRng::seed_from_u64(1);
         let looks: Vec<[f64; 3]> = (0..RAYS)
@@ -33,7 +34,7 @@ fn main() {
                 [down.cos() * cos, down.cos() * sin, -down.sin()]
             })
             .collect();
-        let mut path = Path::default();
+        let mut path = SurfaceRay::default();
         let start = Instant::now();
         for look in &looks {
             let look = DVec3::from(black_box(*look));

@@ -5,7 +5,7 @@
 
 use prob_water::batch::Rows;
 use prob_water::{
-    Across, EmpiricalLobe, Engagement, Ensemble, Gridded, Parameters, Scalar, Surface, Table, Wind,
+    EmpiricalLobe, Engagement, Ensemble, Gridded, OffPlaneModel, Parameters, Scalar, Surface, Table, Wind,
 };
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;
@@ -33,7 +33,7 @@ fn main() {
             instances: INSTANCES,
             ..Parameters::default()
         };
-        let slopes = Parameters { across: Across::Slopes, ..parameters };
+        let slopes = Parameters { across: OffPlaneModel::Slopes, ..parameters };
         let [water, slopes] = [parameters, slopes].map(|p| p.configure().expect("the parameters are valid"));
         let [report_lobe, slopes_lobe] = [&water, &slopes]
             .map(|water| EmpiricalLobe::new(water, table).expect("the table knows this sea"));

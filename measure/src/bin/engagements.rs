@@ -3,9 +3,9 @@
 //! `cargo run --release -p prob-water-measure --bin engagements [-- REPEATS]`: every figure is the best of
 //! `REPEATS` (5 unless told); of whole scenarios and of exact means every run is told.
 
-use prob_water::surface::Numbers;
-use prob_water::surface::Path;
-use prob_water::{Draws, Engagement, Ensemble, Exact, Presence, RealisedSurface, Surface, Water, Wind};
+use prob_water::surface::InstanceRng;
+use prob_water::surface::SurfaceRay;
+use prob_water::{Draws, Engagement, Ensemble, Exact, RealisedSurface, Surface, Water, WhitecapMode, Wind};
 use prob_water::{Parameters, brdf::up};
 use std::hint::black_box;
 use std::time::Instant;
@@ -82,13 +82,13 @@ fn stages(repeats: usize) {
         let mut surface = RealisedSurface::default();
         let draw = best(repeats, || {
             for i in 0..RUNS {
-                surface.draw(waves.components(Numbers::new(Draws::Random, 0, i)));
+                surface.draw(waves.components(InstanceRng::new(Draws::Random, 0, i)));
                 surface.set_time(black_box(1.0));
             }
         });
         let surfaces: Vec<_> =
-            (0..RUNS).map(|i| waves.surface(Numbers::new(Draws::Random, 0, i), 0.0)).collect();
-        let mut path = Path::default();
+            (0..RUNS).map(|i| waves.surface(InstanceRng::new(Draws::Random, 0, i), 0.0)).collect();
+        let mut path = SurfaceRay::default();
         let (laser, beam) = (engagement.laser().into(), engagement.direction().into());
         let mut hits = vec![];
         let cast = best(repeats, || {
@@ -103,7 +103,7 @@ fn stages(repeats: usize) {
         let observer = engagement.observers()[0].into();
         let hide = best(repeats, || {
             for (s, hit) in surfaces.iter().zip(&hits) {
-                black_box(path.hides(s, *hit, observer));
+                black_box(path.occludes(s, *hit, observer));
             }
         });
         let o = engagement.observers()[0].map(|x| x / 100e3);
@@ -169,7 +169,7 @@ fn race(repeats: usize, w: f64, incidence: f64) {
     let mut off = vec![];
     let draws = best(2, || {
         let ensemble = Ensemble {
-            presence: Presence::Drawn,
+            presence: WhitecapMode::Drawn,
             ..Ensemble::new(black_box(&water)).expect("the sea has drawn waves")
         };
         let samples = ensemble.sample(&engagement, &|_| ()).expect("enough memory");

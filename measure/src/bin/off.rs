@@ -5,7 +5,7 @@
 //! times as much where one function is not inlined, `off LEVEL eval|pdf|sample COUNT`.
 
 use prob_water::batch::{Columns, SampleColumns, Sources};
-use prob_water::simd::Level;
+use prob_water::simd::SimdLevel;
 use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Wind};
 use std::hint::black_box;
 
@@ -40,7 +40,7 @@ fn run(count: usize, eval: impl Fn([f32; 3], [f32; 3]) -> f32) {
 const ROWS: usize = 1000;
 
 /// `operation` of `count` rows in the vectors of a level.
-fn run_lanes(level: Level, operation: &str, count: usize) {
+fn run_lanes(level: SimdLevel, operation: &str, count: usize) {
     assert!(level.is_available());
     let lobe: Lobe<f32> =
         Parameters::default().configure().expect("the defaults are valid").local_lobe().cast();
@@ -68,7 +68,7 @@ fn main() {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
     let [case, code, count] = &arguments[..] else { panic!("CASE with|switched|without COUNT") };
     let count = count.parse().expect("COUNT is a number");
-    if let Some(level) = Level::ALL.into_iter().find(|level| level.name() == case) {
+    if let Some(level) = SimdLevel::ALL.into_iter().find(|level| level.name() == case) {
         return run_lanes(level, code, count);
     }
     // A wind in force whose bound is off.

@@ -5,8 +5,8 @@
 
 use glam::DVec3;
 use prob_water::brdf::up;
-use prob_water::surface::Numbers;
-use prob_water::surface::Path;
+use prob_water::surface::InstanceRng;
+use prob_water::surface::SurfaceRay;
 use prob_water::{Draws, Engagement, EnsembleLobe, Exact, InstanceLobe, Parameters, Surface, Water, Wind};
 use std::hint::black_box;
 use std::time::Instant;
@@ -56,15 +56,15 @@ fn sea(w: f64, parameters: Parameters) -> Water {
 fn obscuration(repeats: usize) {
     let water = sea(8.0, Parameters { surface: Surface::Instance, ..Parameters::default() });
     let seas: Vec<_> =
-        (0..1000).map(|n| water.waves().surface(Numbers::new(Draws::Random, 0, n), 0.0)).collect();
+        (0..1000).map(|n| water.waves().surface(InstanceRng::new(Draws::Random, 0, n), 0.0)).collect();
     let hide = |elevation: f64| {
         let (sin, cos) = elevation.to_radians().sin_cos();
-        let (seas, mut path) = (&seas, Path::default());
+        let (seas, mut path) = (&seas, SurfaceRay::default());
         let observer = 100e3 * DVec3::new(cos, 0.0, sin);
         move || {
             for sea in seas {
                 let from = DVec3::new(0.0, 0.0, sea.height([0.0; 2]));
-                black_box(path.hides(sea, from, observer));
+                black_box(path.occludes(sea, from, observer));
             }
         }
     };

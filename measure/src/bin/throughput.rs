@@ -5,7 +5,7 @@
 
 use prob_water::batch::{Columns, SampleColumns, Sources};
 use prob_water::real::Vec3;
-use prob_water::simd::Level;
+use prob_water::simd::SimdLevel;
 use prob_water::{Lobe, Parameters, Scalar, SlopeMeasure};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;
@@ -83,7 +83,7 @@ fn add_lanes(to: &mut Vec<Candidate>, sea: &str, lobe: Lobe<f32>) {
     };
     let (i, o) = (directions(), directions());
     let u = [0; 3].map(|_| (0..PAIRS).map(|_| rng.random::<f32>()).collect::<Vec<_>>());
-    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+    for level in SimdLevel::ALL.into_iter().filter(|level| level.is_available()) {
         for operation in ["eval", "pdf", "sample"] {
             let inputs = [&i, &o, &u].map(Clone::clone);
             let run = move || {

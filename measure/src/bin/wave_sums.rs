@@ -3,9 +3,9 @@
 //! `cargo run --release -p prob-water-measure --bin wave_sums [-- REPEATS]`: components per second, heights, slopes and
 //! accelerations of every place included, all candidates in turn, each `REPEATS` times (5 unless told).
 
-use prob_water::simd::Level;
+use prob_water::simd::SimdLevel;
 use prob_water::surface::Point;
-use prob_water::surface::{Component, Draws, Numbers};
+use prob_water::surface::{Component, Draws, InstanceRng};
 use prob_water::{Parameters, RealisedSurface, Surface, WaveSums, Wind};
 use std::hint::black_box;
 use std::time::Instant;
@@ -27,7 +27,7 @@ fn main() {
             ..Parameters::default()
         };
         let water = water.configure().expect("the parameters are valid");
-        let waves: Vec<_> = water.waves().components(Numbers::new(Draws::Stratified, 1, 0)).collect();
+        let waves: Vec<_> = water.waves().components(InstanceRng::new(Draws::Stratified, 1, 0)).collect();
         let sea = RealisedSurface::new(waves.iter().copied(), 0.0);
         let places: Vec<[f64; 2]> =
             (0..PLACES).map(|n| [0.731 * n as f64 % 97.0, 0.419 * n as f64 % 89.0]).collect();
@@ -46,7 +46,7 @@ fn main() {
             ),
         ];
 
-        for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+        for level in SimdLevel::ALL.into_iter().filter(|level| level.is_available()) {
             let (lanes, places) = (&lanes, &places);
             candidates.push((
                 format!("lanes, {}", level.name()),

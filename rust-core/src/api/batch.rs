@@ -4,7 +4,7 @@ use crate::brdf::Lobe;
 use crate::empirical::Gridded;
 use crate::error::Error;
 use crate::numeric::{Scalar, Vec3};
-use crate::simd::Level;
+use crate::simd::SimdLevel;
 
 pub use super::columns::{Columns, Coordinates, Quantity, SampleColumns, Sources};
 pub use super::tasks::{UNIT_TOLERANCE, check_units};
@@ -99,7 +99,7 @@ impl Batched for f32 {
             let n = rows.normals.map(transposed);
             let [i, o] = [&i, &o].map(|v| v.each_ref().map(Vec::as_slice));
             let n = n.as_ref().map(|v| v.each_ref().map(Vec::as_slice));
-            Columns::unchecked(i, o, n).values(Level::detect(), lobe, value, out);
+            Columns::unchecked(i, o, n).values(SimdLevel::detect(), lobe, value, out);
         })
     }
 }

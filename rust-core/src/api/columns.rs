@@ -4,7 +4,7 @@ use super::tasks::{TASK, UNIT_TOLERANCE, check_rows, in_tasks, same_length};
 use crate::brdf::Lobe;
 use crate::error::Error;
 use crate::numeric::Vec3;
-use crate::simd::{Kernel, Lanes, Level, Vector};
+use crate::simd::{Kernel, Lanes, SimdLevel, Vector};
 use rayon::prelude::*;
 
 /// What is wanted of a row.
@@ -60,27 +60,27 @@ impl<'a> Columns<'a> {
 
     /// Writes f, 1/sr, of every row, on all threads of the current pool.
     pub fn eval(&self, lobe: &Lobe<f32>, f: &mut [f32]) -> Result<(), Error> {
-        self.eval_on(Level::detect(), lobe, f)
+        self.eval_on(SimdLevel::detect(), lobe, f)
     }
 
     /// The same in the vectors of a certain kind: for comparisons. The portable ones stand in for what the processor lacks.
-    pub fn eval_on(&self, level: Level, lobe: &Lobe<f32>, f: &mut [f32]) -> Result<(), Error> {
+    pub fn eval_on(&self, level: SimdLevel, lobe: &Lobe<f32>, f: &mut [f32]) -> Result<(), Error> {
         self.in_tasks(level, lobe, Quantity::Brdf, f)
     }
 
     /// Writes the density, 1/sr, with which [`Lobe::sample`] draws every row's observer.
     pub fn pdf(&self, lobe: &Lobe<f32>, pdf: &mut [f32]) -> Result<(), Error> {
-        self.pdf_on(Level::detect(), lobe, pdf)
+        self.pdf_on(SimdLevel::detect(), lobe, pdf)
     }
 
     /// The same in the vectors of a certain kind, as [`Columns::eval_on`].
-    pub fn pdf_on(&self, level: Level, lobe: &Lobe<f32>, pdf: &mut [f32]) -> Result<(), Error> {
+    pub fn pdf_on(&self, level: SimdLevel, lobe: &Lobe<f32>, pdf: &mut [f32]) -> Result<(), Error> {
         self.in_tasks(level, lobe, Quantity::Density, pdf)
     }
 
     fn in_tasks(
         &self,
-        level: Level,
+        level: SimdLevel,
         lobe: &Lobe<f32>,
         value: Quantity,
         out: &mut [f32],
@@ -91,7 +91,7 @@ impl<'a> Columns<'a> {
     }
 
     /// Writes a value of every row, on this thread.
-    pub(crate) fn values(&self, level: Level, lobe: &Lobe<f32>, value: Quantity, out: &mut [f32]) {
+    pub(crate) fn values(&self, level: SimdLevel, lobe: &Lobe<f32>, value: Quantity, out: &mut [f32]) {
         let out = match value {
             Quantity::Brdf => Output::Brdf(out),
             Quantity::Density => Output::Density(out),
@@ -157,11 +157,11 @@ impl<'a> Sources<'a> {
 
     /// Sources an observer for every row, as [`Lobe::sample`] does, on all threads of the current pool.
     pub fn sample(&self, lobe: &Lobe<f32>, out: SampleColumns<'_>) -> Result<(), Error> {
-        self.sample_on(Level::detect(), lobe, out)
+        self.sample_on(SimdLevel::detect(), lobe, out)
     }
 
     /// The same in the vectors of a certain kind, as [`Columns::eval_on`].
-    pub fn sample_on(&self, level: Level, lobe: &Lobe<f32>, out: SampleColumns<'_>) -> Result<(), Error> {
+    pub fn sample_on(&self, level: SimdLevel, lobe: &Lobe<f32>, out: SampleColumns<'_>) -> Result<(), Error> {
         let SampleColumns { to_observer: [x, y, z], pdf, f, whitecap } = out;
         let rows = self.0.len();
         for found in [x.len(), y.len(), z.len(), pdf.len(), f.len(), whitecap.len()] {
@@ -347,7 +347,7 @@ mod tests {
                     o.each_ref().map(|x| &x[..]),
                     (normals == 1).then(|| n.each_ref().map(|x| &x[..])),
                 );
-                for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+                for level in SimdLevel::ALL.into_iter().filter(|level| level.is_available()) {
                     for quantity in [Quantity::Brdf, Quantity::Density] {
                         let mut found = [0.0; 21];
                         columns.values(level, &lobe, quantity, &mut found);

@@ -6,7 +6,7 @@ use crate::brdf::lobe::steep_gain;
 use crate::brdf::slopes::GramCharlier;
 use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing, slopes};
 use crate::error::Error;
-use crate::sea::{Body, WindProfile, whitecap};
+use crate::sea::{Salinity, WindProfile, whitecap};
 
 impl Parameters {
     /// Checks everything and computes what depends on the parameters alone.
@@ -29,7 +29,7 @@ impl Parameters {
             check("ior", ior, ior)?;
         }
         let ior = self.ior.unwrap_or_else(|| {
-            let salt = if self.water == Body::Ocean { fresnel::SEA_SALT } else { 0.0 };
+            let salt = if self.water == Salinity::Ocean { fresnel::SEA_SALT } else { 0.0 };
             fresnel::pure_water(self.wavelength) + salt
         });
         let variances = slopes::variances(&wind, footprint);

@@ -5,5 +5,6 @@ pub(crate) mod parameters;
 pub mod vocabulary;
 
 pub use parameters::{
-    Across, Average, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, Parameters, Readings, Surface, Water,
+    Average, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters, Readings, Surface,
+    Water,
 };

@@ -2,7 +2,7 @@
 
 use crate::brdf::{Fresnel, Lobe, SlopeMeasure, WindAxes};
 use crate::error::{Error, Warning};
-use crate::sea::{Body, Wind, WindProfile, whitecap};
+use crate::sea::{Salinity, Wind, WindProfile, whitecap};
 
 /// How the report's defective equations are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -51,7 +51,7 @@ pub enum Average {
 
 /// How the empirical model falls off across the plane of incidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Across {
+pub enum OffPlaneModel {
     /// As the report's Gaussian, Eq. 90.
     #[default]
     Report,
@@ -89,7 +89,7 @@ pub struct Parameters {
     /// What the mean over all drawn waves is of; has no effect on other surfaces.
     pub average: Average,
     /// How the empirical model falls off across the plane; has no effect on other surfaces.
-    pub across: Across,
+    pub across: OffPlaneModel,
     /// The report's M: waves of a drawn surface.
     pub components: u32,
     /// The report's N: drawn surfaces of an ensemble.
@@ -107,7 +107,7 @@ pub struct Parameters {
     /// Refractive index; else that of `water` at `wavelength`.
     pub ior: Option<f64>,
     /// Salt or fresh.
-    pub water: Body,
+    pub water: Salinity,
     /// Reflectance of a facet.
     pub fresnel: Fresnel,
     /// Measure of the slope density.
@@ -130,7 +130,7 @@ impl Default for Parameters {
             footprint: None,
             surface: Surface::Flat,
             average: Average::Power,
-            across: Across::Report,
+            across: OffPlaneModel::Report,
             components: 5,
             instances: 50,
             seed: 0,
@@ -139,7 +139,7 @@ impl Default for Parameters {
             fetch: f64::INFINITY,
             wavelength: 0.55,
             ior: None,
-            water: Body::Ocean,
+            water: Salinity::Ocean,
             fresnel: Fresnel::Schlick,
             slope_measure: SlopeMeasure::Angle,
             readings: Readings::Corrected,

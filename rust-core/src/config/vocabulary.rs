@@ -1,13 +1,13 @@
 //! The one vocabulary of parameters: scene files, flags, C, Python and Rust all use these names.
 
 use super::parameters::{
-    Across, Average, DRAWN, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, Parameters, Readings, SEEDS,
-    Surface, Water,
+    Average, DRAWN, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters, Readings,
+    SEEDS, Surface, Water,
 };
 use crate::brdf::fresnel::WAVELENGTHS;
 use crate::brdf::{Fresnel, SlopeMeasure};
 use crate::error::{Error, refuse};
-use crate::sea::{Body, Wind, wind};
+use crate::sea::{Salinity, Wind, wind};
 
 /// A parameter: what documentation and help show of it, and how it is read and written.
 #[derive(Debug, Clone, Copy)]
@@ -461,9 +461,10 @@ const SURFACES: [(&str, Surface); 4] = [
     ("ensemble", Surface::Ensemble),
     ("empirical", Surface::Empirical),
 ];
-const ACROSS: [(&str, Across); 2] = [("report", Across::Report), ("slopes", Across::Slopes)];
+const ACROSS: [(&str, OffPlaneModel); 2] =
+    [("report", OffPlaneModel::Report), ("slopes", OffPlaneModel::Slopes)];
 const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Average::Report)];
-const WATERS: [(&str, Body); 2] = [("ocean", Body::Ocean), ("fresh", Body::Fresh)];
+const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
 const READINGS: [(&str, Readings); 2] =
@@ -681,7 +682,7 @@ mod tests {
                 footprint: Some(1e-7),
                 surface: Surface::Instance,
                 average: Average::Report,
-                across: Across::Slopes,
+                across: OffPlaneModel::Slopes,
                 components: 20,
                 instances: 1_000_000,
                 seed: 9_007_199_254_740_991,
@@ -690,7 +691,7 @@ mod tests {
                 fetch: 5e15,
                 wavelength: 1.064,
                 ior: Some(4.0 / 3.0),
-                water: Body::Fresh,
+                water: Salinity::Fresh,
                 fresnel: Fresnel::Exact,
                 slope_measure: SlopeMeasure::Slope,
                 readings: Readings::AsPrinted,

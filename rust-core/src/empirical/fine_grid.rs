@@ -4,7 +4,7 @@
 use crate::brdf::lobe::{defined, sine};
 use crate::brdf::shadowing::hidden;
 use crate::brdf::{Lobe, Parts};
-use crate::config::Across;
+use crate::config::OffPlaneModel;
 use crate::numeric::packets::{Packets, Tabulated};
 use crate::numeric::real::dot;
 use crate::numeric::{Real, Scalar, Vec3};
@@ -29,7 +29,7 @@ pub struct FineGrid<T: Real> {
     /// Its reflectance, shadowing, wind and whitecaps' BRDF.
     pub(crate) lobe: Lobe<T>,
     /// How f falls off across the plane of incidence.
-    pub(crate) across: Across,
+    pub(crate) across: OffPlaneModel,
     /// There are whitecaps.
     pub(crate) whitecaps: bool,
     /// The largest tan(theta_i/2), and steps over it.
@@ -117,7 +117,7 @@ impl<T: Tabulated> FineGrid<T> {
         if parts.facets {
             let (density, visible) = self.level(above_i, above_o, &place);
             let mut exponent = ratio + density;
-            if self.across == Across::Report {
+            if self.across == OffPlaneModel::Report {
                 let [sigma, delta] = self.widths(&place, lit);
                 let x = (place.phi - delta) * (sigma * place.narrowing).recip();
                 exponent = exponent - x * x;
@@ -158,13 +158,13 @@ impl<T: Tabulated> FineGrid<T> {
     }
 
     /// What the facets would reflect on level water, over rho, as the logarithm of their density and the rest: towards the
-    /// observer with [`Across::Slopes`], else towards what is in the plane of it.
+    /// observer with [`OffPlaneModel::Slopes`], else towards what is in the plane of it.
     #[inline(always)]
     pub(crate) fn level(&self, i: Vec3<T>, o: Vec3<T>, place: &Place<T>) -> (T, T) {
         let (zero, one) = (T::of(0.0), T::of(1.0));
         let facets = &self.lobe.facets;
         let (slope, cos, sin) = match self.across {
-            Across::Slopes => {
+            OffPlaneModel::Slopes => {
                 let lean = -T::max(i[2] + o[2], T::of(1e-12)).recip();
                 let [u, v] = facets.wind.to_wind([i[0] + o[0], i[1] + o[1]]).map(|h| lean * h);
                 // The waves that carry these facets lean with them, and show the observer more than level water does.
@@ -175,7 +175,7 @@ impl<T: Tabulated> FineGrid<T> {
                 let cos = T::max(up * length.rsqrt(), T::of(LEANING));
                 ([u, v], [i[2], cos], [sine(i[2]), sine(cos)])
             }
-            Across::Report => {
+            OffPlaneModel::Report => {
                 // By half angles: the half vector leans by half the difference of theta_r and theta_i.
                 let [a, b] = place.halves;
                 let lean = (a - b) * a.mul_add(b, one).recip();

@@ -33,13 +33,13 @@ use super::reference::Moments;
 use super::table::Table;
 use crate::brdf::lobe::defined;
 use crate::brdf::{Lobe, Parts};
-use crate::config::{Across, Surface, Water};
+use crate::config::{OffPlaneModel, Surface, Water};
 use crate::error::Error;
 use crate::numeric::Vec3;
 use crate::numeric::packets::{Packets, Tabulated};
-use crate::statistics::level_water::{Spreads, ln_densities};
+use crate::statistics::level_water::{BaselineLobe, ln_densities};
 use crate::statistics::{Engagement, Exact, Statistics};
-use crate::surface::{Draws, Numbers};
+use crate::surface::{Draws, InstanceRng};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::num::NonZeroU32;
@@ -47,7 +47,7 @@ use std::num::NonZeroU32;
 /// The cosine that stands for the horizon.
 const LOWEST: f64 = 2e-3;
 
-/// Relative error of a mean by the table, in its grid and in the plane of incidence or with [`Across::Slopes`].
+/// Relative error of a mean by the table, in its grid and in the plane of incidence or with [`OffPlaneModel::Slopes`].
 const TABLE_ERROR: f64 = 0.05;
 
 /// Logarithm of the largest mean square over the squared mean: far from the mirror in a light wind Gaussian slopes give
@@ -71,7 +71,7 @@ pub struct EmpiricalLobe {
     /// Draws directions, and knows their density: the facets of all waves, and whitecaps in proportion to what they
     /// cover. Its `eval` is not this lobe's.
     pub sampler: Lobe<f64>,
-    spreads: Spreads,
+    spreads: BaselineLobe,
     /// Tangents of half the angles theta_i and theta_r between which the table has nodes.
     incidences: [f64; 2],
     thetas: [f64; 2],
@@ -121,7 +121,7 @@ impl EmpiricalLobe {
     pub fn new(water: &Water, table: &Table) -> Result<Self, Error> {
         let water = &water.on(&[Surface::Empirical])?;
         let slice = table.slice(water)?;
-        let spreads = Spreads::new(water);
+        let spreads = BaselineLobe::new(water);
         let (densities, steps) = ln_densities(&Exact::new(water)?, &spreads, DENSITIES);
         let densities: Vec<f32> = densities.into_iter().map(half).collect();
         let [incidences, thetas] = slice.ends().map(|ends| ends.map(|angle| (0.5 * angle).tan()));
@@ -141,8 +141,8 @@ impl EmpiricalLobe {
                     // At the horizon all is hidden: a little above it stands for that.
                     let o = [theta.sin(), 0.0, theta.cos().max(LOWEST)];
                     let leaning = match water.parameters.across {
-                        Across::Slopes => spreads.shadowing(source, o) / spreads.leaning(source, o),
-                        Across::Report => 1.0,
+                        OffPlaneModel::Slopes => spreads.shadowing(source, o) / spreads.leaning(source, o),
+                        OffPlaneModel::Report => 1.0,
                     };
                     let ratio = ratio * spreads.share(source, o) * leaning;
                     [half(ratio.ln()), half(SHARES * whitecaps) / SHARES as f32, *square as f32]
@@ -185,8 +185,8 @@ impl EmpiricalLobe {
         let place = self.grid.place(i, o);
         let (moments, rho) = self.moments(i, o, &place);
         let [mean, std] = match self.grid.across {
-            Across::Slopes => moments.brdf(rho, self.sampler.whitecap_brdf),
-            Across::Report => {
+            OffPlaneModel::Slopes => moments.brdf(rho, self.sampler.whitecap_brdf),
+            OffPlaneModel::Report => {
                 let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths);
                 let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
                 let x = (place.phi - delta) / sigma;
@@ -203,11 +203,11 @@ impl EmpiricalLobe {
         Estimate { mean, std, outside: self.outside(&place) }
     }
 
-    /// Where the lobe across the plane peaks, or with [`Across::Slopes`] towards the observer itself; and rho.
+    /// Where the lobe across the plane peaks, or with [`OffPlaneModel::Slopes`] towards the observer itself; and rho.
     fn moments(&self, i: [f64; 3], o: [f64; 3], place: &Place<f64>) -> (Moments, f64) {
         let [ratio, whitecaps, square] = place.in_plane(&self.in_plane);
         let (density, visible) = self.grid.level(i, o, place);
-        let seen = if self.grid.across == Across::Report { place.view() } else { o };
+        let seen = if self.grid.across == OffPlaneModel::Report { place.view() } else { o };
         let facets = visible * (ratio + density).exp();
         let square = (square + self.spreads.ln_square(i, seen)).clamp(0.0, LARGEST_SQUARE).exp();
         let moments = Moments { facets, facets2: facets * facets * square, whitecaps };
@@ -217,7 +217,7 @@ impl EmpiricalLobe {
     /// f drawn through the table's spreads, as single surfaces would show it: a whitecap, or facets whose lobe across the
     /// plane has a height, a width and an offset of its own. The mean lobe is as wide as single ones with their offsets
     /// make it, so that of these the width is less; their heights have mean and spread in the plane of the table. So the
-    /// mean of the draws is Eq. 90's, and nothing is diluted twice. With [`Across::Slopes`] there are no lobes to draw:
+    /// mean of the draws is Eq. 90's, and nothing is diluted twice. With [`OffPlaneModel::Slopes`] there are no lobes to draw:
     /// f is, with the mean and the spread of [`EmpiricalLobe::estimate`].
     pub fn monte_carlo(
         &self,
@@ -236,14 +236,14 @@ impl EmpiricalLobe {
         let foam = self.sampler.whitecap_brdf;
         let unseen = self.spreads.unseen(i, o).min(1.0 - whitecaps);
         let open = (1.0 - whitecaps - unseen).max(1e-6);
-        let lobe = (self.grid.across == Across::Report).then(|| {
+        let lobe = (self.grid.across == OffPlaneModel::Report).then(|| {
             let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths);
             let (sigma, u_sigma) = (sigma * place.narrowing, u_sigma * place.narrowing);
             let single = (sigma * sigma - 2.0 * u_delta * u_delta).max(0.04 * sigma * sigma).sqrt();
             ([single, u_sigma], [place.phi - delta, u_delta])
         });
         let draw = |instance: u64| {
-            let mut numbers = Numbers::new(Draws::Sobol, seed, instance);
+            let mut numbers = InstanceRng::new(Draws::Sobol, seed, instance);
             let chance = numbers.next();
             let [[height, wide], [aside, _]] = [(); 2].map(|()| normals(numbers.next(), numbers.next()));
             // Off the peak of its own lobe, and how far from that the mean's peak is.
@@ -323,8 +323,8 @@ impl EmpiricalLobe {
 #[allow(clippy::too_many_arguments)]
 fn fine_grid(
     sampler: Lobe<f64>,
-    across: Across,
-    spreads: &Spreads,
+    across: OffPlaneModel,
+    spreads: &BaselineLobe,
     last: f64,
     in_plane: &[[f32; 3]],
     widths: &[[f32; 4]],

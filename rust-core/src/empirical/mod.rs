@@ -11,5 +11,5 @@ pub mod table_file;
 pub use fine_grid::FineGrid;
 pub use lobe::{EmpiricalLobe, Estimate, Gridded};
 pub use planes::Planes;
-pub use reference::{Full, Moments, Node};
+pub use reference::{Moments, Node, ReferenceModel};
 pub use table::Table;

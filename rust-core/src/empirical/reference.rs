@@ -18,9 +18,9 @@ use crate::config::Water;
 use crate::error::Error;
 use crate::numeric::gaussian_fit::Gaussian;
 use crate::statistics::characteristic::variances;
-use crate::statistics::level_water::Spreads;
+use crate::statistics::level_water::BaselineLobe;
 use crate::statistics::{Engagement, Exact};
-use crate::surface::{Draws, Numbers, Path, Surface, Waves};
+use crate::surface::{Draws, InstanceRng, Surface, SurfaceRay, Waves};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -92,22 +92,22 @@ pub struct Node {
 
 /// The full model of a sea.
 #[derive(Debug, Clone)]
-pub struct Full {
+pub struct ReferenceModel {
     /// Its parameters give the seed and the number of instances. Whitecaps reflect nothing: they are counted.
     water: Water,
     waves: Waves,
     exact: Exact,
-    spreads: Spreads,
+    spreads: BaselineLobe,
 }
 
-impl Full {
+impl ReferenceModel {
     /// Of a sea with drawn waves; refused as by [`Exact::new`].
     pub fn new(water: &Water) -> Result<Self, Error> {
         let mut water = *water;
         water.lobe.whitecap_brdf = 0.0;
         let mut exact = Exact::new(&water)?;
         exact.obscuration = false;
-        Ok(Self { water, waves: water.waves(), exact, spreads: Spreads::new(&water) })
+        Ok(Self { water, waves: water.waves(), exact, spreads: BaselineLobe::new(&water) })
     }
 
     /// The same sea under a wind from another azimuth, in degrees, counted from the plane of incidence, away from the
@@ -234,7 +234,7 @@ impl Full {
                         for (sums, way) in sums.iter_mut().zip(ways) {
                             self.add(sums, point, source, *way, || {
                                 let observer = DVec3::from(*way) * OBSERVERS;
-                                !path.hides(surface, point.position, observer)
+                                !path.occludes(surface, point.position, observer)
                             });
                         }
                     });
@@ -250,8 +250,13 @@ impl Full {
     }
 
     /// Shows a drawn surface's point at the origin, if it faces the source.
-    fn point(&self, instance: u64, source: [f64; 3], mut look: impl FnMut(&SeaPoint, &Surface, &mut Path)) {
-        let mut numbers = Numbers::new(Draws::Sobol, self.water.parameters.seed, instance);
+    fn point(
+        &self,
+        instance: u64,
+        source: [f64; 3],
+        mut look: impl FnMut(&SeaPoint, &Surface, &mut SurfaceRay),
+    ) {
+        let mut numbers = InstanceRng::new(Draws::Sobol, self.water.parameters.seed, instance);
         // The first number decides about whitecaps, where they are drawn.
         numbers.next();
         let surface = self.waves.surface(numbers, 0.0);
@@ -261,8 +266,8 @@ impl Full {
             return;
         }
         let position = DVec3::new(0.0, 0.0, at.height);
-        let mut path = Path::default();
-        let lit = !path.hides(&surface, position, DVec3::from(source) * LASER);
+        let mut path = SurfaceRay::default();
+        let lit = !path.occludes(&surface, position, DVec3::from(source) * LASER);
         let whitecap = self.water.whitecap_probability(at.acceleration);
         let point = SeaPoint { position, normal: at.normal(), area, lit, whitecap };
         look(&point, &surface, &mut path);
@@ -293,11 +298,11 @@ impl Full {
     }
 
     /// The mean lobe across the plane.
-    fn across(&self, planes: &Planes, reach: f64) -> Result<Across, Error> {
+    fn across(&self, planes: &Planes, reach: f64) -> Result<OffPlaneModel, Error> {
         let phis: Vec<f64> = (-ACROSS..=ACROSS).map(|i| reach * f64::from(i) / f64::from(ACROSS)).collect();
         let directions: Vec<_> = phis.iter().map(|phi| planes.across(*phi)).collect();
         let values: Vec<f64> = self.moments(planes, &directions)?.iter().map(|m| m.facets).collect();
-        Ok(Across { fit: Gaussian::fit(&phis, &values), phis })
+        Ok(OffPlaneModel { fit: Gaussian::fit(&phis, &values), phis })
     }
 
     /// Fits of single surfaces' lobes across the plane, with their weights.
@@ -317,7 +322,7 @@ impl Full {
                     .map(|(way, rho)| {
                         let f = self.water.lobe.facets.eval(source, *way, point.normal) / rho;
                         let observer = DVec3::from(*way) * OBSERVERS;
-                        if f > 0.0 && way[2] > 0.0 && !path.hides(surface, point.position, observer) {
+                        if f > 0.0 && way[2] > 0.0 && !path.occludes(surface, point.position, observer) {
                             f
                         } else {
                             0.0
@@ -339,7 +344,7 @@ impl Full {
 }
 
 /// The mean lobe across the plane.
-struct Across {
+struct OffPlaneModel {
     phis: Vec<f64>,
     fit: Option<Gaussian>,
 }

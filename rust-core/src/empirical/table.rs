@@ -32,13 +32,13 @@
 //! # }
 //! ```
 
-use super::reference::{Full, Moments, Node};
+use super::reference::{Moments, Node, ReferenceModel};
 use crate::config::parameters::MOST_INSTANCES;
 use crate::config::vocabulary::{Builder, Value};
 use crate::config::{Parameters, Surface, Water};
 use crate::error::{Error, refuse};
 use crate::sea::Wind;
-use crate::statistics::level_water::Spreads;
+use crate::statistics::level_water::BaselineLobe;
 use rayon::prelude::*;
 
 /// Numbers of a node beside those in the plane: sigma, u_sigma, delta, u_delta (radians) and the share of fits.
@@ -156,7 +156,7 @@ impl Plan {
         }
         // What a node is refused for, the finest footprint under the strongest wind is.
         let last = |axis: &[f64]| axis[axis.len() - 1];
-        Full::new(&plan.sea(last(&grid.friction_velocity), grid.footprint[0])?)?;
+        ReferenceModel::new(&plan.sea(last(&grid.friction_velocity), grid.footprint[0])?)?;
         Ok(plan)
     }
 
@@ -184,7 +184,8 @@ impl Plan {
         let g = &self.grid;
         let incidence = g.incidence[row % incidences].to_radians();
         let footprint = g.footprint[row / incidences % footprints];
-        let full = Full::new(&self.sea(g.friction_velocity[row / incidences / footprints], footprint)?)?;
+        let full =
+            ReferenceModel::new(&self.sea(g.friction_velocity[row / incidences / footprints], footprint)?)?;
         let thetas: Vec<f64> = g.theta_r.iter().map(|theta| theta.to_radians()).collect();
         let nodes: Vec<Node> = g
             .wind_azimuth
@@ -363,7 +364,7 @@ impl Table {
             for (b, wb) in weights(&ln(&g.footprint), d.ln()) {
                 if wa * wb != 0.0 {
                     let sea = plan.sea(g.friction_velocity[a], g.footprint[b])?;
-                    parts.push((wa * wb, [a, b], Spreads::new(&sea)));
+                    parts.push((wa * wb, [a, b], BaselineLobe::new(&sea)));
                 }
             }
         }

@@ -326,10 +326,10 @@ fn below<T: Real>(x: T) -> T {
 /// Mean of N_z, or of 1, under whitecaps, and of the same times the squares of the slope.
 fn foam(slopes: &Slopes, average: Average) -> (f64, DVec2) {
     let mut foam = (0.0, DVec2::ZERO);
-    for point in slopes.capped.iter().flat_map(|_| slopes.points()) {
+    for point in slopes.whitecap_density.iter().flat_map(|_| slopes.points()) {
         let share = match average {
-            Average::Power => point.capped / (1.0 + point.slope.length_squared()).sqrt(),
-            Average::Report => point.capped,
+            Average::Power => point.whitecap_density / (1.0 + point.slope.length_squared()).sqrt(),
+            Average::Report => point.whitecap_density,
         };
         foam.0 += share;
         foam.1 += share * point.slope * point.slope;

@@ -43,7 +43,7 @@ const BREAKING: f64 = 0.1;
 
 /// What does not change with time.
 #[derive(Debug, Clone)]
-pub struct Level {
+pub struct StaticGeometry {
     /// x and y of every vertex, m: the sea's own coordinates.
     pub texcoords: Vec<f32>,
     /// D of the facets at every vertex, m: [`Mesh::facets`].
@@ -96,7 +96,7 @@ impl Mesh {
     }
 
     /// What does not change with time.
-    pub fn level(&self) -> Level {
+    pub fn level(&self) -> StaticGeometry {
         let grid = &self.grid;
         let places = grid.rings.iter().flat_map(|ring| grid.places(ring));
         let facets: Vec<f64> = grid.rings.par_iter().map(|ring| self.facets(ring.footprint)).collect();
@@ -106,7 +106,7 @@ impl Mesh {
             .zip(facets)
             .flat_map(|(ring, footprint)| std::iter::repeat_n(footprint as f32, grid.on(ring)));
         let vertices = grid.vertices as usize;
-        let mut level = Level {
+        let mut level = StaticGeometry {
             texcoords: Vec::with_capacity(2 * vertices),
             footprints: Vec::with_capacity(vertices),
             faces: grid.triangles(),

@@ -5,6 +5,6 @@ pub mod spectrum;
 pub mod whitecap;
 pub mod wind;
 
-pub use salinity::Body;
+pub use salinity::Salinity;
 pub use spectrum::Spectrum;
 pub use wind::{Wind, WindProfile};

@@ -2,7 +2,7 @@
 
 /// Salt or no salt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Body {
+pub enum Salinity {
     /// Sea water, chlorinity 19 g/kg.
     #[default]
     Ocean,

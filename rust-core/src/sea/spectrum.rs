@@ -1,6 +1,6 @@
 //! The wave energy spectrum: Eqs. 3-22. Everything here is cgs, as in the report.
 
-use super::salinity::Body;
+use super::salinity::Salinity;
 use super::whitecap::GRAVITY;
 use super::wind::WindProfile;
 use crate::numeric::root::bisect;
@@ -62,10 +62,10 @@ struct Fetch {
 
 impl Spectrum {
     /// The spectrum of a wind over water of a depth and with a fetch in m, both above 0, up to infinity.
-    pub fn new(wind: &WindProfile, water: Body, depth: f64, fetch: f64) -> Self {
+    pub fn new(wind: &WindProfile, water: Salinity, depth: f64, fetch: f64) -> Self {
         let density = match water {
-            Body::Ocean => 1.025,
-            Body::Fresh => 1.0,
+            Salinity::Ocean => 1.025,
+            Salinity::Fresh => 1.0,
         };
         let tension = TENSION / density;
         let km2 = GRAVITY / tension;
@@ -205,12 +205,12 @@ mod tests {
 
     fn spectrum(w: f64) -> Spectrum {
         let wind = Wind::FrictionVelocity(w).profile().unwrap();
-        Spectrum::new(&wind, Body::Ocean, f64::INFINITY, f64::INFINITY)
+        Spectrum::new(&wind, Salinity::Ocean, f64::INFINITY, f64::INFINITY)
     }
 
     #[test]
     fn k2_is_a_wave_of_ten_hertz() {
-        for (water, k2) in [(Body::Fresh, 2.6221), (Body::Ocean, 2.6354)] {
+        for (water, k2) in [(Salinity::Fresh, 2.6221), (Salinity::Ocean, 2.6354)] {
             let wind = Wind::FrictionVelocity(8.0).profile().unwrap();
             let s = Spectrum::new(&wind, water, f64::INFINITY, f64::INFINITY);
             assert!((s.frequency(s.k2) - 20.0 * PI).abs() < 1e-12);
@@ -258,7 +258,7 @@ mod tests {
     #[test]
     fn fetch_and_depth() {
         let wind = Wind::FrictionVelocity(16.0).profile().unwrap();
-        let of = |depth, fetch| Spectrum::new(&wind, Body::Ocean, depth, fetch);
+        let of = |depth, fetch| Spectrum::new(&wind, Salinity::Ocean, depth, fetch);
         let (open, near) = (of(f64::INFINITY, f64::INFINITY), of(f64::INFINITY, 5e3));
         let mut most = 0.0f64;
         for i in 0..2000 {
@@ -282,7 +282,7 @@ mod tests {
         assert!(spectrum(0.473).k_max(0.15).is_some());
         let calm = Wind::FrictionVelocity(0.0).profile().unwrap();
         for fetch in [100.0, f64::INFINITY] {
-            let s = Spectrum::new(&calm, Body::Ocean, f64::INFINITY, fetch);
+            let s = Spectrum::new(&calm, Salinity::Ocean, f64::INFINITY, fetch);
             assert!([1e-3, 0.1, s.k2, 10.0].iter().all(|k| s.density(*k) == 0.0));
         }
         for w in [0.473, 2.0, 8.0, 56.0, 238.65] {

@@ -5,10 +5,10 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Calls what [`super::Level::run`] has made sure of.
+/// Calls what [`super::SimdLevel::run`] has made sure of.
 macro_rules! intrinsic {
     ($call:expr) => {
-        // SAFETY: vectors are reached through `Level::run` only, which has asked the processor for their features.
+        // SAFETY: vectors are reached through `SimdLevel::run` only, which has asked the processor for their features.
         Self(unsafe { $call })
     };
 }

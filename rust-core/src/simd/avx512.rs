@@ -4,10 +4,10 @@ use super::vector::{Arithmetic, INV_SQRT_2, Vector};
 use std::arch::x86_64::*;
 use std::mem::transmute;
 
-/// Calls what [`super::Level::run`] has made sure of.
+/// Calls what [`super::SimdLevel::run`] has made sure of.
 macro_rules! intrinsic {
     ($call:expr) => {
-        // SAFETY: vectors are reached through `Level::run` only, which has asked the processor for their features.
+        // SAFETY: vectors are reached through `SimdLevel::run` only, which has asked the processor for their features.
         Self(unsafe { $call })
     };
 }

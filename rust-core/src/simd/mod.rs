@@ -1,6 +1,6 @@
 //! Many numbers at once: the closed form and the sums of waves in the vectors of the processor at hand.
 //!
-//! [`Lanes`] is a [`Real`], so the model's one text is compiled for each [`Vector`]; [`Level::run`] chooses among them when
+//! [`Lanes`] is a [`Real`], so the model's one text is compiled for each [`Vector`]; [`SimdLevel::run`] chooses among them when
 //! the program runs. Tilts are [`DoubleFloat`]s: float64 would halve the lanes.
 
 #[cfg(target_arch = "x86_64")]
@@ -18,7 +18,7 @@ pub(crate) use vector::Vector;
 
 /// What vectors a processor has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum SimdLevel {
     /// Arrays of 8 that the compiler makes of them what it can.
     Portable,
     /// 8 lanes: x86-64 with AVX2 and FMA.
@@ -33,7 +33,7 @@ pub(crate) trait Kernel {
     fn run<V: Vector>(self);
 }
 
-impl Level {
+impl SimdLevel {
     /// Every one, the plainest first.
     pub const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
 

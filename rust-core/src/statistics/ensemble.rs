@@ -37,12 +37,12 @@ use super::engagement::Engagement;
 use crate::config::Water;
 use crate::config::parameters::DRAWN;
 use crate::error::Error;
-use crate::surface::{Component, Draws, Numbers, Path, Point, Surface, Waves};
+use crate::surface::{Component, Draws, InstanceRng, Point, Surface, SurfaceRay, Waves};
 use glam::DVec3;
 
 /// Whether a whitecap stands at the hit of an instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Presence {
+pub enum WhitecapMode {
     /// Drawn with its probability (Eq. 53), as in the report: f is the whitecap's or the facets'.
     #[default]
     Drawn,
@@ -72,7 +72,7 @@ pub struct Ensemble {
     /// How their random numbers are spread.
     pub draws: Draws,
     /// How whitecaps take part.
-    pub presence: Presence,
+    pub presence: WhitecapMode,
     /// Which seas are drawn, where facets are narrow.
     pub proposal: Proposal,
     /// Place in m and time in s at which the drawn phases count. Any will do, but evenly spread phases help most where
@@ -113,7 +113,7 @@ impl Ensemble {
             water,
             waves: water.waves(),
             draws: Draws::Random,
-            presence: Presence::Drawn,
+            presence: WhitecapMode::Drawn,
             proposal: Proposal::Plain,
             phases_at: ([0.0; 2], 0.0),
         })
@@ -127,7 +127,7 @@ impl Ensemble {
 
     /// The components of an instance, and the number of [0, 1) that decides about its whitecap.
     pub fn components(&self, instance: u64) -> (f64, impl Iterator<Item = Component>) {
-        let mut numbers = Numbers::new(self.draws, self.water.parameters.seed, instance);
+        let mut numbers = InstanceRng::new(self.draws, self.water.parameters.seed, instance);
         let chance = numbers.next();
         let (place, time) = self.phases_at;
         (chance, self.waves.components(numbers).map(move |c| c.with_phase_at(place, time)))
@@ -148,8 +148,8 @@ impl Ensemble {
             position: [place[0], place[1], point.height],
             normal: point.normal(),
             whitecap: match self.presence {
-                Presence::Drawn => f64::from(chance < probability),
-                Presence::Expected => probability,
+                WhitecapMode::Drawn => f64::from(chance < probability),
+                WhitecapMode::Expected => probability,
             },
         }
     }
@@ -171,7 +171,7 @@ impl Ensemble {
             let way = (observer - from).normalize();
             seen.cos_r = way.dot(n);
             seen.obscured =
-                seen.cos_r <= 0.0 || worker.path.hides(&worker.surface, from - origin, observer - origin);
+                seen.cos_r <= 0.0 || worker.path.occludes(&worker.surface, from - origin, observer - origin);
             if !seen.obscured {
                 let lobe = &self.water.lobe;
                 let facets = if hit.whitecap < 1.0 {
@@ -191,5 +191,5 @@ pub(crate) struct Worker {
     /// The surface drawn last.
     pub surface: Surface,
     /// Of the ray that is followed over it.
-    pub path: Path,
+    pub path: SurfaceRay,
 }

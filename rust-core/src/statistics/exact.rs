@@ -194,21 +194,21 @@ impl Exact {
             return Means { f, f_cos: f * o.z.max(0.0), f_squared: f * f, whitecaps: 0.0 };
         };
         let mut means = Means::default();
-        self.integrate(slopes, i, o, |s, weight, density, capped| {
+        self.integrate(slopes, i, o, |s, weight, density, whitecap_density| {
             let n = DVec3::from(normal(s.into()));
             let f = lobe.facets.eval(i.into(), o.into(), n.to_array());
-            let weight = weight * (density - capped) * shown(s, i);
+            let weight = weight * (density - whitecap_density) * shown(s, i);
             means.f += weight * f;
             means.f_cos += weight * f * n.dot(o);
             means.f_squared += weight * f * f;
         });
-        if slopes.capped.is_some() {
+        if slopes.whitecap_density.is_some() {
             let f = lobe.whitecap_brdf;
-            let [share, share_cos] = self.sum(slopes, COARSE, |s, _, capped| {
+            let [share, share_cos] = self.sum(slopes, COARSE, |s, _, whitecap_density| {
                 if shown(s, o) <= 0.0 {
                     return [0.0; 2];
                 }
-                let share = capped * shown(s, i);
+                let share = whitecap_density * shown(s, i);
                 [share, share * DVec3::from(normal(s.into())).dot(o)]
             });
             means.f += f * share;
@@ -261,8 +261,8 @@ impl Exact {
         for (y, height) in midpoints(left, right, (f * step).length()) {
             for (x, width) in &columns {
                 let slope = e * *x + f * y;
-                let (density, capped) = slopes.at(slope);
-                add(self.wind.to_world(slope), width * height, density, capped);
+                let (density, whitecap_density) = slopes.at(slope);
+                add(self.wind.to_world(slope), width * height, density, whitecap_density);
             }
         }
     }
@@ -276,8 +276,8 @@ impl Exact {
     ) -> [f64; N] {
         let table = &slopes.density;
         let mut sums = [0.0; N];
-        slopes.nodes(stride, |slope, density, capped| {
-            let values = of(self.wind.to_world(slope), density, capped);
+        slopes.nodes(stride, |slope, density, whitecap_density| {
+            let values = of(self.wind.to_world(slope), density, whitecap_density);
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
         });
         sums.map(|sum| sum * table.steps[0] * table.steps[1] * (stride * stride) as f64)
@@ -297,12 +297,13 @@ impl Exact {
             let s = self.wind.to_world(point.slope);
             let shown_to_source = shown(s, i);
             area += point.density * shown_to_source;
-            foam += point.capped * shown_to_source;
+            foam += point.whitecap_density * shown_to_source;
             if shown(s, o) > 0.0 && point.density * shown_to_source > 0.0 {
                 let f = lobe.facets.eval(i.into(), o.into(), normal(s.into()));
-                values.push((f, visible * (point.density - point.capped).max(0.0) * shown_to_source));
-                if point.capped > 0.0 {
-                    values.push((lobe.whitecap_brdf, visible * point.capped * shown_to_source));
+                values
+                    .push((f, visible * (point.density - point.whitecap_density).max(0.0) * shown_to_source));
+                if point.whitecap_density > 0.0 {
+                    values.push((lobe.whitecap_brdf, visible * point.whitecap_density * shown_to_source));
                 }
             }
         }

@@ -98,10 +98,11 @@ impl Cell {
         for (x, width) in midpoints(low.x, high.x, step.x) {
             for (y, height) in midpoints(low.y, high.y, step.y) {
                 let slope = DVec2::new(x, y);
-                let (density, capped) = slopes.at(slope);
+                let (density, whitecap_density) = slopes.at(slope);
                 let n = in_world(slope);
                 let share =
-                    (density - capped) * width * height * facets.density_along(in_world(half), n) / n[2];
+                    (density - whitecap_density) * width * height * facets.density_along(in_world(half), n)
+                        / n[2];
                 cell.density += share;
                 cell.mean += share * slope;
                 cell.variance += share * slope * slope;

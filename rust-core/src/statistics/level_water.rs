@@ -20,14 +20,14 @@ pub(crate) const LEANING: f64 = 1e-3;
 
 /// What depends on the variances of the slopes alone.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Spreads {
+pub(crate) struct BaselineLobe {
     /// Facets with the slope variances of all waves; their reflectance is 1.
     all: Facets<f64>,
     /// Standard deviations of the drawn slopes, upwind and crosswind.
     drawn: DVec2,
 }
 
-impl Spreads {
+impl BaselineLobe {
     /// Of a sea with drawn waves.
     pub fn new(water: &Water) -> Self {
         let [drawn_u, drawn_c, _] = variances(&water.waves());
@@ -112,7 +112,7 @@ impl Spreads {
         (self.drawn * self.drawn / DVec2::from(self.sigmas()).powf(2.0)).into()
     }
 
-    /// The same as [`Spreads::shadowing`], towards the observer about the normal of those waves.
+    /// The same as [`BaselineLobe::shadowing`], towards the observer about the normal of those waves.
     pub fn leaning(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
         let [i, o] = [i, o].map(DVec3::from);
         let half = i + o;
@@ -145,7 +145,7 @@ impl Spreads {
 /// The density of facets along a half vector, with the 1/4 of Eq. 56, over its tilt angles upwind and crosswind, 0 in the
 /// middle: so many nodes on a side, row by row of those upwind, the logarithm of its ratio to Gauss's function of the two
 /// angles, of all slopes' variances; and the steps between nodes in standard deviations.
-pub(crate) fn ln_densities(exact: &Exact, spreads: &Spreads, rows: usize) -> (Vec<f64>, [f64; 2]) {
+pub(crate) fn ln_densities(exact: &Exact, spreads: &BaselineLobe, rows: usize) -> (Vec<f64>, [f64; 2]) {
     let table = exact.facet_density();
     let middle = 0.5 * (rows - 1) as f64;
     let sigmas = DVec2::from(spreads.sigmas());

@@ -12,7 +12,7 @@ mod slope_draws;
 mod summary;
 
 pub use engagement::{Aim, Engagement, FARTHEST, FLATTEST_BEAM};
-pub use ensemble::{Ensemble, Hit, Observation, Presence, Proposal};
+pub use ensemble::{Ensemble, Hit, Observation, Proposal, WhitecapMode};
 pub use exact::{Exact, Means};
 pub use samples::{MEMORY, Samples, Sighting};
 pub use slope_draws::FEWEST_COMPONENTS;

@@ -2,7 +2,7 @@
 
 use super::engagement::Engagement;
 use super::ensemble::{Ensemble, Hit, Observation, Proposal, Worker};
-use super::level_water::Spreads;
+use super::level_water::BaselineLobe;
 use super::slope_draws::{FEWEST_COMPONENTS, SlopeDraws};
 use super::summary::{Bounds, Draw, Statistics};
 use crate::brdf::Lobe;
@@ -134,7 +134,7 @@ impl Ensemble {
             Proposal::Plain => all(false),
             Proposal::Slopes => all(true),
             Proposal::Auto => {
-                let spreads = Spreads::new(&self.water);
+                let spreads = BaselineLobe::new(&self.water);
                 engagements.iter().map(|e| Plan(self.needs_slopes(e, &spreads))).collect()
             }
         })

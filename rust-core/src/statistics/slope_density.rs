@@ -70,7 +70,7 @@ pub(crate) struct Slopes {
     /// p.
     pub density: SlopeTable,
     /// W; `None` where whitecaps are off or too rare to matter.
-    pub capped: Option<SlopeTable>,
+    pub whitecap_density: Option<SlopeTable>,
 }
 
 impl Slopes {
@@ -116,12 +116,13 @@ impl Slopes {
         let density = density.into_iter().map(|c| c.powi(components as i32)).collect();
         // Whitecaps are a small part of the whole: they need fewer frequencies.
         let few = [upwind.resolved, crosswind.resolved];
-        let capped = caps(component, water, &upwind.frequencies[..few[0]], &crosswind.frequencies[..few[1]]);
+        let whitecap_density =
+            caps(component, water, &upwind.frequencies[..few[0]], &crosswind.frequencies[..few[1]]);
         Ok(Self {
             sigma: DVec2::new(u, c),
             frequency: DVec2::new(upwind.end(), crosswind.end()),
             density: transform(density, all),
-            capped: capped.map(|spectrum| transform(spectrum, few)),
+            whitecap_density: whitecap_density.map(|spectrum| transform(spectrum, few)),
         })
     }
 
@@ -166,7 +167,10 @@ impl Slopes {
     /// Density and W at a slope upwind and crosswind.
     #[inline]
     pub fn at(&self, slope: DVec2) -> (f64, f64) {
-        (self.density.at(slope.into()), self.capped.as_ref().map_or(0.0, |table| table.at(slope.into())))
+        (
+            self.density.at(slope.into()),
+            self.whitecap_density.as_ref().map_or(0.0, |table| table.at(slope.into())),
+        )
     }
 
     /// Evenly spread points, of which sums are integrals over the slopes: half of them Gaussian as wide as the slopes and
@@ -183,9 +187,9 @@ impl Slopes {
             let r2 = place.length_squared();
             let crowd = 0.5 * (gauss(r2, WIDTHS[0]) + gauss(r2, WIDTHS[1])) / (self.sigma.x * self.sigma.y);
             let slope = place * self.sigma;
-            let (density, capped) = self.at(slope);
+            let (density, whitecap_density) = self.at(slope);
             let share = 1.0 / (crowd * f64::from(POINTS));
-            Point { slope, density: density * share, capped: capped * share }
+            Point { slope, density: density * share, whitecap_density: whitecap_density * share }
         };
         (0..POINTS).map(point).collect()
     }
@@ -197,10 +201,10 @@ impl Slopes {
             for j in (0..columns).step_by(stride) {
                 let slope = DVec2::new(i as f64, j as f64) * DVec2::from(self.density.steps);
                 let density = self.density.node(i, j);
-                let capped = self.capped.as_ref().map_or(0.0, |table| table.node(i, j));
+                let whitecap_density = self.whitecap_density.as_ref().map_or(0.0, |table| table.node(i, j));
                 for u in if i == 0 { &[1.0][..] } else { &[1.0, -1.0] } {
                     for c in if j == 0 { &[1.0][..] } else { &[1.0, -1.0] } {
-                        call(slope * DVec2::new(*u, *c), density, capped);
+                        call(slope * DVec2::new(*u, *c), density, whitecap_density);
                     }
                 }
             }
@@ -215,7 +219,7 @@ pub(crate) struct Point {
     /// p over the density of points.
     pub density: f64,
     /// W over the density of points.
-    pub capped: f64,
+    pub whitecap_density: f64,
 }
 
 /// Frequencies and slopes along the wind or across it.

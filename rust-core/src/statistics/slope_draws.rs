@@ -24,8 +24,8 @@
 use super::characteristic::{steepest, variances};
 use super::engagement::Engagement;
 use super::ensemble::{Ensemble, Hit, Observation, Worker};
-use super::level_water::Spreads;
-use crate::surface::{Component, Draws, Numbers};
+use super::level_water::BaselineLobe;
+use crate::surface::{Component, Draws, InstanceRng};
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -89,7 +89,7 @@ impl Gaussian {
 impl Ensemble {
     /// Whether plain draws leave the mean of f towards each observer to too few seas: facets are narrow beside the drawn
     /// slopes, and f varies by them more than by whitecaps.
-    pub(crate) fn needs_slopes(&self, engagement: &Engagement, spreads: &Spreads) -> Vec<bool> {
+    pub(crate) fn needs_slopes(&self, engagement: &Engagement, spreads: &BaselineLobe) -> Vec<bool> {
         let water = &self.water;
         // Mean square over squared mean of the facets' f at the peak.
         let square = spreads.ln_square([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]).exp();
@@ -156,12 +156,12 @@ impl Ensemble {
         [plain, slopes]: [f64; 2],
     ) -> Option<(f64, Vec<Component>, f64)> {
         let seed = self.water.parameters.seed;
-        let mut numbers = Numbers::new(self.draws, seed, instance);
+        let mut numbers = InstanceRng::new(self.draws, seed, instance);
         let chance = numbers.next();
         let mut components: Vec<Component> = self.waves.components(numbers).collect();
         let mut moving: Vec<Ellipse> = components.iter().map(Ellipse::of).collect();
         if important {
-            let mut further = Numbers::new(Draws::Random, seed, instance | FURTHER);
+            let mut further = InstanceRng::new(Draws::Random, seed, instance | FURTHER);
             let [a, b, pair, split] = [(); 4].map(|()| further.next());
             let split = (split * SPLITS as f64) as usize;
             let meetings = Meetings::new(&Ellipse::pair(&moving, split), proposal.draw([a, b]));
@@ -211,7 +211,7 @@ impl Ensemble {
         let area = -beam.z + DVec2::from(point.slope).dot(beam.truncate());
         let from = DVec3::new(0.0, 0.0, point.height);
         let back = (laser.z - point.height) / -beam.z;
-        if area <= 0.0 || worker.path.hides(&worker.surface, from, from - back * beam) {
+        if area <= 0.0 || worker.path.occludes(&worker.surface, from, from - back * beam) {
             return 0.0;
         }
         let place = laser + back * beam;

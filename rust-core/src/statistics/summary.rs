@@ -212,7 +212,7 @@ mod tests {
     /// The bound of a share of successes covers the true one as often as it says.
     #[test]
     fn bounds_hold() {
-        let mut numbers = crate::surface::Numbers::new(crate::surface::Draws::Random, 5, 0);
+        let mut numbers = crate::surface::InstanceRng::new(crate::surface::Draws::Random, 5, 0);
         for p in [0.003, 0.03, 0.3, 0.9] {
             let mut held = 0;
             for _ in 0..2000 {

@@ -8,8 +8,8 @@ mod wave_sums;
 mod waves;
 
 pub use component::{Component, share};
-pub use random::{Draws, Numbers};
-pub use ray::Path;
+pub use random::{Draws, InstanceRng};
+pub use ray::SurfaceRay;
 pub use realised::{Point, Surface, normal};
 pub use wave_sums::WaveSums;
 pub use waves::Waves;

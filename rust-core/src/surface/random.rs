@@ -26,7 +26,7 @@ pub enum Draws {
 }
 
 /// The uniform numbers of one instance.
-pub struct Numbers {
+pub struct InstanceRng {
     pub(super) draws: Draws,
     stream: ChaCha8Rng,
     sobol: Option<Point>,
@@ -42,7 +42,7 @@ struct Point {
 /// Points of a sequence, as a power of 2.
 const SEQUENCE: u32 = 16;
 
-impl Numbers {
+impl InstanceRng {
     /// The numbers of an instance.
     pub fn new(draws: Draws, seed: u64, instance: u64) -> Self {
         let mut key = [0; 32];
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn streams_are_stable() {
         let first = |seed, instance| {
-            let mut numbers = Numbers::new(Draws::Random, seed, instance);
+            let mut numbers = InstanceRng::new(Draws::Random, seed, instance);
             [numbers.next(), numbers.next(), numbers.next()]
         };
         assert_eq!(first(0, 0)[0], (0xd640_5f89_2fef_003e_u64 >> 11) as f64 / (1u64 << 53) as f64);
@@ -101,7 +101,7 @@ mod tests {
         for first in [0, 1 << SEQUENCE] {
             let mut rows = vec![];
             for instance in first..first + 256 {
-                let mut numbers = Numbers::new(Draws::Sobol, 5, instance);
+                let mut numbers = InstanceRng::new(Draws::Sobol, 5, instance);
                 rows.push([(); 300].map(|()| numbers.next()));
             }
             for d in 0..256 {
@@ -117,6 +117,6 @@ mod tests {
             let mean = rows.iter().map(|r| r[290]).sum::<f64>() / 256.0;
             assert!((mean - 0.5).abs() < 0.1);
         }
-        assert_ne!(Numbers::new(Draws::Sobol, 5, 0).next(), Numbers::new(Draws::Sobol, 6, 0).next());
+        assert_ne!(InstanceRng::new(Draws::Sobol, 5, 0).next(), InstanceRng::new(Draws::Sobol, 6, 0).next());
     }
 }

@@ -15,20 +15,20 @@ const RESOLUTION: f64 = 1e-13;
 
 /// A surface as a ray meets it; kept by the caller for its memory.
 #[derive(Debug, Default)]
-pub struct Path {
+pub struct SurfaceRay {
     /// Amplitude, m, phase at the start, radians, and wave number along the ray, rad/m, lane by lane.
     waves: Vec<[[f64; LANES]; 3]>,
     /// Height of the ray at its start, m.
     height: f64,
-    /// Its rise by distance.
-    rise: f64,
+    /// Its slope by distance.
+    slope: f64,
     /// Bound of the gap's second derivative, 1/m.
-    bend: f64,
-    /// Bound of the surface's rise by distance along the ray.
-    steepest: f64,
+    curvature_bound: f64,
+    /// Bound of the surface's slope by distance along the ray.
+    slope_bound: f64,
 }
 
-impl Path {
+impl SurfaceRay {
     /// Where a beam from `origin`, in m, along a unit `direction` that points down first meets the surface. `None` if
     /// the origin itself lies under a wave.
     pub fn first_hit(&mut self, surface: &Surface, origin: DVec3, direction: DVec3) -> Option<DVec3> {
@@ -50,20 +50,20 @@ impl Path {
 
     /// Whether the surface hides `observer`, in m, from a point `from` on it: the way there dips under the water, or
     /// the observer is under it.
-    pub fn hides(&mut self, surface: &Surface, from: DVec3, observer: DVec3) -> bool {
+    pub fn occludes(&mut self, surface: &Surface, from: DVec3, observer: DVec3) -> bool {
         let way = observer - from;
         let distance = way.length();
         self.set(surface, from, way / distance);
-        if self.rise >= self.steepest {
+        if self.slope >= self.slope_bound {
             return false;
         }
         let (_, opening) = self.gap(0.0);
         if opening <= 0.0 {
             return true;
         }
-        let above = if self.rise > 0.0 { (surface.highest() - from.z) / self.rise } else { f64::INFINITY };
+        let above = if self.slope > 0.0 { (surface.highest() - from.z) / self.slope } else { f64::INFINITY };
         // The parabola's vertex: the start itself has no gap to begin with.
-        self.crossing(opening / self.bend, distance.min(above)).is_some()
+        self.crossing(opening / self.curvature_bound, distance.min(above)).is_some()
     }
 
     fn set(&mut self, surface: &Surface, start: DVec3, direction: DVec3) {
@@ -71,9 +71,9 @@ impl Path {
         self.waves.clear();
         self.waves.extend(surface.along(place.into(), horizontal.into()));
         self.height = start.z;
-        self.rise = direction.z;
-        self.bend = self.total(|a, k| a * k * k);
-        self.steepest = self.total(|a, k| a * k.abs());
+        self.slope = direction.z;
+        self.curvature_bound = self.total(|a, k| a * k * k);
+        self.slope_bound = self.total(|a, k| a * k.abs());
     }
 
     fn total(&self, of: impl Fn(f64, f64) -> f64) -> f64 {
@@ -91,7 +91,7 @@ impl Path {
                 opening[l] += a[l] * k[l] * sin[l];
             }
         }
-        (self.height + self.rise * distance + sum(gap), self.rise + sum(opening))
+        (self.height + self.slope * distance + sum(gap), self.slope + sum(opening))
     }
 
     /// First distance after `start` and before `end` at which the ray is not above the water.
@@ -102,9 +102,12 @@ impl Path {
             if gap <= 0.0 {
                 return Some(distance);
             }
-            let root = (opening * opening + 2.0 * self.bend * gap).sqrt();
-            let step =
-                if opening < 0.0 { 2.0 * gap / (root - opening) } else { (root + opening) / self.bend };
+            let root = (opening * opening + 2.0 * self.curvature_bound * gap).sqrt();
+            let step = if opening < 0.0 {
+                2.0 * gap / (root - opening)
+            } else {
+                (root + opening) / self.curvature_bound
+            };
             distance += step;
             if step <= RESOLUTION * (1.0 + distance) {
                 return Some(distance);

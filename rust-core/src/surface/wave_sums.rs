@@ -5,7 +5,7 @@
 
 use super::realised::{Point, Surface};
 use crate::numeric::Real;
-use crate::simd::{Kernel, Lanes, Level, Vector};
+use crate::simd::{Kernel, Lanes, SimdLevel, Vector};
 use std::f64::consts::TAU;
 
 /// The waves of a surface at its time, by property, filled up to whole vectors with waves of amplitude 0.
@@ -68,11 +68,11 @@ impl WaveSums {
     /// # Panics
     /// If there are not as many points as places.
     pub fn points(&self, places: &[[f64; 2]], points: &mut [Point]) {
-        self.points_on(Level::detect(), places, points);
+        self.points_on(SimdLevel::detect(), places, points);
     }
 
     /// The same in the vectors of a certain kind: for comparisons. The portable ones stand in for what the processor lacks.
-    pub fn points_on(&self, level: Level, places: &[[f64; 2]], points: &mut [Point]) {
+    pub fn points_on(&self, level: SimdLevel, places: &[[f64; 2]], points: &mut [Point]) {
         assert_eq!(places.len(), points.len(), "a point for every place");
         level.run(Sums { waves: self, places, points });
     }

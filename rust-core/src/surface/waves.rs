@@ -5,7 +5,7 @@
 //! not used. So components come in order of rising wave number, and other M draw another sea.
 
 use super::component::Component;
-use super::random::{Draws, Numbers};
+use super::random::{Draws, InstanceRng};
 use super::realised::Surface;
 use crate::config::Water;
 use crate::sea::Spectrum;
@@ -63,7 +63,7 @@ impl Waves {
     }
 
     /// The components that these numbers draw.
-    pub fn components(&self, mut numbers: Numbers) -> impl Iterator<Item = Component> {
+    pub fn components(&self, mut numbers: InstanceRng) -> impl Iterator<Item = Component> {
         let range = self.log_range.unwrap_or_default();
         let mut shift = None;
         (0..self.len()).map(move |j| {
@@ -78,7 +78,7 @@ impl Waves {
     }
 
     /// Their surface at a time in s.
-    pub fn surface(&self, numbers: Numbers, time: f64) -> Surface {
+    pub fn surface(&self, numbers: InstanceRng, time: f64) -> Surface {
         Surface::new(self.components(numbers), time)
     }
 }

@@ -3,9 +3,9 @@
 use crate::Lines;
 use glam::DVec3;
 use prob_water::spectrum::Spectrum;
-use prob_water::surface::Path;
-use prob_water::surface::{Component, Draws, Numbers};
-use prob_water::{Body, Layout, Mesh, Parameters, RealisedSurface, Surface, Water, WaveSums, Wind};
+use prob_water::surface::SurfaceRay;
+use prob_water::surface::{Component, Draws, InstanceRng};
+use prob_water::{Layout, Mesh, Parameters, RealisedSurface, Salinity, Surface, Water, WaveSums, Wind};
 use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
 
@@ -50,7 +50,7 @@ fn spectrum(lines: &mut Lines) {
         if lines.one(&[true, false, false]) { lines.uniform(7.87, 7.95) } else { lines.decades(0.5, 238.65) };
     let depth = if lines.one(&[true, false]) { f64::INFINITY } else { lines.decades(0.5, 100.0) };
     let fetch = if lines.one(&[true, false]) { f64::INFINITY } else { lines.decades(1e3, 1e5) };
-    let (water, density) = lines.one(&[(Body::Ocean, 1.025), (Body::Fresh, 1.0)]);
+    let (water, density) = lines.one(&[(Salinity::Ocean, 1.025), (Salinity::Fresh, 1.0)]);
     let profile = Wind::FrictionVelocity(w).profile().expect("within Table 1");
     let s = Spectrum::new(&profile, water, depth, fetch);
     let footprint = lines.footprint();
@@ -87,7 +87,7 @@ fn some_waves(lines: &mut Lines, footprints: [f64; 2], w: [f64; 2]) -> Vec<Compo
         ..drawn(lines.decades(w[0], w[1]), lines.decades(footprints[0], footprints[1]))
     };
     let waves = parameters.configure().expect("the parameters are valid").waves();
-    let numbers = Numbers::new(Draws::Random, lines.rows as u64, (lines.uniform(0.0, 1e9)) as u64);
+    let numbers = InstanceRng::new(Draws::Random, lines.rows as u64, (lines.uniform(0.0, 1e9)) as u64);
     waves.components(numbers).collect()
 }
 
@@ -115,7 +115,7 @@ fn cast(lines: &mut Lines) {
     let direction = DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), -theta.cos());
     let aim = DVec3::new(lines.uniform(-5.0, 5.0), lines.uniform(-5.0, 5.0), 0.0);
     let origin = aim - lines.one(&[20.0, FAR]) / theta.cos().max(0.02) * direction;
-    let Some(hit) = Path::default().first_hit(&surface, origin, direction) else { return };
+    let Some(hit) = SurfaceRay::default().first_hit(&surface, origin, direction) else { return };
     let x = json!([listed(&waves), origin.to_array(), direction.to_array()]);
     lines.row("cast", x, json!({"float64": hit.to_array()}));
 }

@@ -3,7 +3,7 @@
 use crate::{point, rms, seconds, write};
 use prob_water::batch::Columns;
 use prob_water::real::Vec3;
-use prob_water::simd::Level;
+use prob_water::simd::SimdLevel;
 use prob_water::{Aim, EmpiricalLobe, Engagement, Ensemble, Exact, Parameters, Scalar, Surface, Table, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;
@@ -57,7 +57,7 @@ fn flat(repeats: usize, pairs: &[[Vec3<f32>; 2]], directory: &Path) {
     let columns = Columns::new(i, o, None).expect("they are unit vectors");
     // One thread, as the others.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+    for level in SimdLevel::ALL.into_iter().filter(|level| level.is_available()) {
         let mut eval = || columns.eval_on(level, &single, &mut out).expect("as many rows");
         let times: Vec<_> = (0..=repeats).map(|_| pool.install(|| seconds(&mut eval))).collect();
         point("brdf", "lanes", level.name(), error(&out, &reference), &per_pair(&times));

@@ -1,7 +1,7 @@
 //! Means of f over drawn seas at some observers: draws, evenly spread draws, and none.
 
 use crate::{point, rms, seconds};
-use prob_water::{Draws, Engagement, Ensemble, Exact, Parameters, Presence, Surface, Water, Wind};
+use prob_water::{Draws, Engagement, Ensemble, Exact, Parameters, Surface, Water, WhitecapMode, Wind};
 
 /// Draws of a mean, as powers of 4 from 64; each error is over so many seeds.
 const DRAWS: [u64; 5] = [64, 256, 1024, 4096, 16_384];
@@ -49,7 +49,7 @@ pub fn front(repeats: usize) {
         (0..views.len()).map(|o| samples.statistics(0, o, &[]).expect("they are there").mean).collect()
     };
     let expected = |seed, draws| Ensemble {
-        presence: Presence::Expected,
+        presence: WhitecapMode::Expected,
         ..Ensemble::new(&sea(seed, draws)).expect("the sea has drawn waves")
     };
     let off = |means: &[f64]| means.iter().zip(&exact).map(|(a, b)| a / b - 1.0).collect::<Vec<_>>();

@@ -2,7 +2,7 @@
 
 use crate::{point, rms, seconds, write};
 use glam::DVec3;
-use prob_water::surface::Path as Ray;
+use prob_water::surface::SurfaceRay as Ray;
 use prob_water::{Draws, Ensemble, Parameters, RealisedSurface, Surface, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::hint::black_box;

@@ -1,6 +1,6 @@
 //! Draws of seas, directions and uniform numbers, with more than their share of corners.
 
-use prob_water::{Body, Fresnel, Parameters, Readings, SlopeMeasure, Wind};
+use prob_water::{Fresnel, Parameters, Readings, Salinity, SlopeMeasure, Wind};
 use rand::rngs::StdRng;
 use rand::{Rng, RngCore, SeedableRng};
 use std::f64::consts::TAU;
@@ -101,7 +101,7 @@ impl Draw {
                 1 => Some(self.between(1.0, 4.0)),
                 _ => None,
             },
-            water: self.one_of(&[Body::Ocean, Body::Fresh]),
+            water: self.one_of(&[Salinity::Ocean, Salinity::Fresh]),
             fresnel: self.one_of(&[Fresnel::Schlick, Fresnel::Exact]),
             slope_measure: self.one_of(&[SlopeMeasure::Angle, SlopeMeasure::Slope]),
             readings: self.one_of(&[Readings::Corrected, Readings::Corrected, Readings::AsPrinted]),

@@ -4,7 +4,8 @@ use crate::draw::{Draw, Vec3};
 use crate::tally::{Tally, fine, shown};
 use prob_water::brdf::up;
 use prob_water::{
-    Across, Average, EmpiricalLobe, EnsembleLobe, FacetTable, Fresnel, Parameters, Surface, Table, Wind,
+    Average, EmpiricalLobe, EnsembleLobe, FacetTable, Fresnel, OffPlaneModel, Parameters, Surface, Table,
+    Wind,
 };
 
 /// Evaluations that the making of a lobe is worth.
@@ -59,7 +60,7 @@ pub fn empirical(draw: &mut Draw, tally: &mut Tally) {
         surface: Surface::Empirical,
         wind: Wind::FrictionVelocity(draw.log_between(w[0], w[1])),
         footprint: Some(draw.log_between(d[0], d[1])),
-        across: draw.one_of(&[Across::Report, Across::Slopes]),
+        across: draw.one_of(&[OffPlaneModel::Report, OffPlaneModel::Slopes]),
         ..Parameters::default()
     };
     let sea = draw_optics(draw, sea);

@@ -4,11 +4,11 @@ use crate::draw::{Draw, Vec3};
 use crate::means::{drawn_sea, pair};
 use crate::tally::{Tally, fine, shown};
 use prob_water::statistics::FARTHEST;
-use prob_water::surface::Numbers;
-use prob_water::surface::Path;
+use prob_water::surface::InstanceRng;
+use prob_water::surface::SurfaceRay;
 use prob_water::{
-    Aim, Draws, Engagement, Ensemble, Exact, InstanceLobe, Parameters, Presence, Proposal, Statistics,
-    Surface,
+    Aim, Draws, Engagement, Ensemble, Exact, InstanceLobe, Parameters, Proposal, Statistics, Surface,
+    WhitecapMode,
 };
 
 /// One drawn sea on a level surface, at places near and far.
@@ -41,8 +41,8 @@ pub fn casts(draw: &mut Draw, tally: &mut Tally) {
     let sea = draw.about(sea);
     let waves = sea.configure().expect("within the ranges of the vocabulary").waves();
     let draws = draw.one_of(&[Draws::Random, Draws::Sobol, Draws::Stratified]);
-    let surface = waves.surface(Numbers::new(draws, sea.seed, draw.bits() >> 32), sea.time);
-    let mut path = Path::default();
+    let surface = waves.surface(InstanceRng::new(draws, sea.seed, draw.bits() >> 32), sea.time);
+    let mut path = SurfaceRay::default();
     let mut hits = 0;
     for _ in 0..32 {
         let incidence =
@@ -73,7 +73,7 @@ pub fn casts(draw: &mut Draw, tally: &mut Tally) {
         });
         let observer = draw.direction().map(|x| x * distance);
         if observer[2] > 0.0 {
-            path.hides(&surface, hit, observer.into());
+            path.occludes(&surface, hit, observer.into());
         }
     }
     tally.count("rays", 32);
@@ -99,7 +99,7 @@ pub fn statistics(draw: &mut Draw, tally: &mut Tally) {
     let ensemble = if draw.flag() { ensemble.around(&engagement) } else { ensemble };
     let few = sea.components < 4;
     let proposal = if few { Proposal::Auto } else { draw.one_of(&[Proposal::Plain, Proposal::Slopes]) };
-    let presence = draw.one_of(&[Presence::Drawn, Presence::Expected]);
+    let presence = draw.one_of(&[WhitecapMode::Drawn, WhitecapMode::Expected]);
     let ensemble = Ensemble { presence, proposal, ..ensemble };
     match ensemble.sample(std::slice::from_ref(&engagement), &|_| ()) {
         Ok(samples) => {
