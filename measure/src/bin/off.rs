@@ -83,13 +83,13 @@ fn main() {
         "exact_fresnel" if on => parameters.fresnel = Fresnel::Exact,
         "as_printed" if on => parameters.readings = Readings::AsPrinted,
         "tilt_angles" if !on => parameters.slope_measure = SlopeMeasure::Slope,
-        "visible_bound" => parameters.wind = Wind::FrictionVelocity(4.0),
+        "masking_bound" => parameters.wind = Wind::FrictionVelocity(4.0),
         "oblique_wind" if on => parameters.wind_direction = 37.0,
         "exact_fresnel" | "as_printed" | "tilt_angles" | "oblique_wind" => {}
         _ => panic!("{case}"),
     }
     let mut lobe: Lobe<f32> = parameters.configure().expect("the parameters are valid").local_lobe().cast();
-    if case == "visible_bound" && !on {
+    if case == "masking_bound" && !on {
         assert!(lobe.facets.bounded);
         lobe.facets.bounded = false;
     }

@@ -278,7 +278,7 @@ impl Sea {
     ) -> Traced {
         let f = self.lobe.eval_in::<E>(i, o, self.normal, parts);
         match self.normal {
-            Some(n) => self.lobe.shown_by_wave::<E>(f, i, o, n),
+            Some(n) => self.lobe.projected_from_wave::<E>(f, i, o, n),
             None => f * cosine,
         }
     }

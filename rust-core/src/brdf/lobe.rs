@@ -5,7 +5,7 @@
 //! number gives none.
 
 use super::fresnel::Reflectance;
-use super::shadowing::hidden;
+use super::shadowing::cos_lambda;
 use super::slopes::{GramCharlier, WIDTH};
 use crate::numeric::real::{Extended, dot};
 use crate::numeric::{Real, Scalar, Vec3};
@@ -268,7 +268,7 @@ impl<T: Real> Facets<T> {
         }
     }
 
-    /// A tilt in the density's measure: the angle, or its tangent, clamped to [`STEEPEST`].
+    /// A tilt in the density's measure: the angle, or its tangent, clamped to [`MAX_SLOPE`].
     #[inline(always)]
     fn measure<E: Extended<T>>(&self, [sine, cosine]: [E; 2], level: bool) -> E {
         if level {
@@ -279,7 +279,7 @@ impl<T: Real> Facets<T> {
         }
         let steep = cosine.to_density().lt(T::Density::TINY);
         let slope = sine.over(cosine.at_least(T::TINY));
-        E::select(steep, E::from_real(T::of(STEEPEST)), slope)
+        E::select(steep, E::from_real(T::of(MAX_SLOPE)), slope)
     }
 
     /// f_SW (Eq. 56), 1/sr.
@@ -319,7 +319,7 @@ impl<T: Real> Facets<T> {
     pub(crate) fn tilt_density<E: Extended<T>>(&self, u: E, c: E, inv_cos2: T::Density) -> T::Density {
         let (zero, floor) = (T::Density::of(0.0), T::Density::of(STEEP_FLOOR));
         // Slopes have no end; the polynomial must not overflow.
-        let [mut u, c] = if self.slope_measure { [u.clamp(FARTHEST), c.clamp(FARTHEST)] } else { [u, c] };
+        let [mut u, c] = if self.slope_measure { [u.clamp(MAX_TILT), c.clamp(MAX_TILT)] } else { [u, c] };
         if self.as_printed {
             u = E::select(zero.lt(u.to_density()), -u, u);
         }
@@ -365,11 +365,11 @@ impl<T: Real> Facets<T> {
     pub(crate) fn masked_area(&self, rho: T, [ci, cr]: [T; 2], [spread_i, spread_o]: [T; 2]) -> T {
         let mut area = ci * cr;
         if self.shadowing {
-            area = cr.mul_add(hidden(ci, self.sigma_shadow * sine(ci)), area);
-            area = ci.mul_add(hidden(cr, self.sigma_shadow * sine(cr)), area);
+            area = cr.mul_add(cos_lambda(ci, self.sigma_shadow * sine(ci)), area);
+            area = ci.mul_add(cos_lambda(cr, self.sigma_shadow * sine(cr)), area);
         }
         if self.bounded {
-            let [visible_i, visible_o] = [ci + hidden(ci, spread_i), cr + hidden(cr, spread_o)];
+            let [visible_i, visible_o] = [ci + cos_lambda(ci, spread_i), cr + cos_lambda(cr, spread_o)];
             area = T::max(area, rho / self.bound * T::max(visible_i * cr, visible_o * ci));
         }
         area
@@ -516,7 +516,7 @@ impl Facets<f64> {
         DVec2::new(self.sigma_u, self.sigma_c) * widened
     }
 
-    /// Whether [`Facets::visible_bound`] matters: scanned over both elevations, with the largest
+    /// Whether [`Facets::masking_bound`] matters: scanned over both elevations, with the largest
     /// reflectance (forward) and the rougher azimuth. Above w* = 9 cm/s (for an infinite footprint; below
     /// for smaller ones) it does not, and costs nothing.
     pub(crate) fn needs_bound(&self) -> bool {
@@ -524,7 +524,7 @@ impl Facets<f64> {
         let spread = std::f64::consts::SQRT_2 * self.sigma_u.max(self.sigma_c);
         // Elevations from 90 degrees down to 1e-4, evenly in their logarithm.
         let elevation = |k: i32| (90.0 * 10f64.powf(-6.0 * f64::from(k) / f64::from(STEPS))).to_radians();
-        let f = |e: f64, s: f64| hidden(e.sin(), s * e.cos()) / e.sin();
+        let f = |e: f64, s: f64| cos_lambda(e.sin(), s * e.cos()) / e.sin();
         (0..=STEPS).any(|a| {
             (0..=a).any(|b| {
                 let (low, high) = (elevation(a), elevation(b));
@@ -541,10 +541,10 @@ impl Facets<f64> {
 pub(crate) const GRAZING: f64 = 1e-12;
 
 /// The slope of what has none.
-const STEEPEST: f64 = 1e6;
+const MAX_SLOPE: f64 = 1e6;
 
 /// Slopes in widths are clamped to this: the density there is 0.
-const FARTHEST: f64 = 1e3;
+const MAX_TILT: f64 = 1e3;
 
 /// What steep facets may count beside level ones, whatever their density.
 pub const STEEP_FLOOR: f64 = 1e-6;

@@ -1,7 +1,7 @@
 //! Nakajima and Tanaka's shadowing function, Eqs. 64-67, in a form without singularities.
 //!
-//! With `nu = cos/(sigma sin)` Eq. 66 is `F = ierfc(nu)/(2 nu)`. The BRDF needs
-//! `G/(cos_i cos_r) = 1/(cos_i cos_r + cos_r a_i + cos_i a_r)` with the [`hidden`] area
+//! With `nu = cos/(sigma sin)` Eq. 66 is `F = ierfc(nu)/(2 nu)`, Smith's Lambda of Gaussian slopes. The BRDF needs
+//! `G/(cos_i cos_r) = 1/(cos_i cos_r + cos_r a_i + cos_i a_r)` with [`cos_lambda`],
 //! `a = cos F = sigma sin ierfc(nu)/2`, finite at grazing angles.
 
 use crate::numeric::Real;
@@ -11,12 +11,12 @@ pub fn sigma(w10: f64) -> f64 {
     (5.34e-3 * w10).sqrt()
 }
 
-/// `cos F`, for the cosine of the angle to the normal and `spread`, the slope's standard deviation
-/// along the direction (times sqrt 2) times the sine.
+/// `cos Lambda` of an angle to the normal, where `sigma_sin` is sqrt 2 times the slope's standard deviation along the direction
+/// times the sine.
 #[inline(always)]
-pub fn hidden<T: Real>(cos: T, spread: T) -> T {
-    let nu = cos / T::max(spread, T::SMALL);
-    T::of(0.5) * spread * nu.ierfc()
+pub fn cos_lambda<T: Real>(cos: T, sigma_sin: T) -> T {
+    let nu = cos / T::max(sigma_sin, T::SMALL);
+    T::of(0.5) * sigma_sin * nu.ierfc()
 }
 
 #[cfg(test)]
@@ -33,9 +33,9 @@ mod tests {
         };
         for degrees in [20.0f64, 60.0, 80.0, 85.0, 89.0, 89.99] {
             let (s, c) = degrees.to_radians().sin_cos();
-            assert!((hidden(c, sigma * s) / c - f(c)).abs() < 1e-12 * (1.0 + f(c)));
+            assert!((cos_lambda(c, sigma * s) / c - f(c)).abs() < 1e-12 * (1.0 + f(c)));
         }
-        assert_eq!(hidden(1.0, 0.0), 0.0);
-        assert_eq!(hidden(0.0, 0.0), 0.0);
+        assert_eq!(cos_lambda(1.0, 0.0), 0.0);
+        assert_eq!(cos_lambda(0.0, 0.0), 0.0);
     }
 }

@@ -2,13 +2,13 @@
 //! evaluate, in any number type.
 
 use crate::brdf::lobe::{defined, sine};
-use crate::brdf::shadowing::hidden;
+use crate::brdf::shadowing::cos_lambda;
 use crate::brdf::{Lobe, Parts};
 use crate::config::OffPlaneModel;
 use crate::numeric::packets::{Packets, Tabulated};
 use crate::numeric::real::dot;
 use crate::numeric::{Real, Scalar, Vec3};
-use crate::statistics::level_water::{LEANING, NOTHING};
+use crate::statistics::level_water::{MIN_COS, NOTHING};
 
 /// Steps of the fine grid: over theta_i, the wind's azimuth and theta_r.
 pub(crate) const INCIDENCES: usize = 32;
@@ -172,7 +172,7 @@ impl<T: Tabulated> FineGrid<T> {
                 let [o_u, o_v] = facets.wind.to_wind([o[0], o[1]]);
                 let up = o[2] - carried[0].mul_add(o_u, carried[1] * o_v);
                 let length = carried[0].mul_add(carried[0], carried[1].mul_add(carried[1], one));
-                let cos = T::max(up * length.rsqrt(), T::of(LEANING));
+                let cos = T::max(up * length.rsqrt(), T::of(MIN_COS));
                 ([u, v], [i[2], cos], [sine(i[2]), sine(cos)])
             }
             OffPlaneModel::Report => {
@@ -190,7 +190,7 @@ impl<T: Tabulated> FineGrid<T> {
         };
         let mut area = cos[0] * cos[1];
         if facets.shadowing {
-            let masked = |k: usize| hidden(cos[k], facets.sigma_shadow * sin[k]);
+            let masked = |k: usize| cos_lambda(cos[k], facets.sigma_shadow * sin[k]);
             area = cos[1].mul_add(masked(0), cos[0].mul_add(masked(1), area));
         }
         (self.ln_density(slope), T::max(area, T::of(GRAZING)).recip())

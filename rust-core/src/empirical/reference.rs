@@ -182,16 +182,16 @@ impl ReferenceModel {
         }
         // How much drawn surfaces matter: by the direction that sees least.
         let [start, end] = HIDDEN.map(f64::ln);
-        let of_source = self.spreads.hidden(source);
+        let of_source = self.spreads.lambda(source);
         let weight = |o: [f64; 3]| {
-            let t = (of_source.max(self.spreads.hidden(o)).max(1e-30).ln() - start) / (end - start);
+            let t = (of_source.max(self.spreads.lambda(o)).max(1e-30).ln() - start) / (end - start);
             let t = t.clamp(0.0, 1.0);
             t * t * (3.0 - 2.0 * t)
         };
         let weights: Vec<f64> = seen.iter().map(|o| weight(*o)).collect();
         // Of narrow facets few draws count, and of low views few are seen: both together take more of them.
         let [high, low]: [Vec<usize>; 2] = [false, true].map(|low| {
-            let matters = |k: &usize| weights[*k] > 0.0 && (self.spreads.hidden(seen[*k]) > LOW) == low;
+            let matters = |k: &usize| weights[*k] > 0.0 && (self.spreads.lambda(seen[*k]) > LOW) == low;
             (0..seen.len()).filter(matters).collect()
         });
         for (group, more) in [(high, 1.0), (low, self.spreads.narrowness().clamp(1.0, MORE))] {

@@ -16,7 +16,7 @@
 //! turn from the observer: the mean is Gauss and Legendre's over seven slopes up to there, in the observer's plane.
 
 use crate::brdf::lobe::{defined, spread};
-use crate::brdf::shadowing::hidden;
+use crate::brdf::shadowing::cos_lambda;
 use crate::brdf::{Lobe, Parts};
 use crate::config::{Average, Surface, Water};
 use crate::error::Error;
@@ -198,7 +198,7 @@ impl<T: Tabulated> MeanLobe<T> {
             reflected = reflected * local_o[2];
         }
         // Over cos theta_i cos theta_r (1 + L_i + L_o).
-        let masked = |v: Local<T>| hidden(v[2], spread([v[0], v[1]], self.sigma));
+        let masked = |v: Local<T>| cos_lambda(v[2], spread([v[0], v[1]], self.sigma));
         let area = local_o[2].mul_add(masked(local_i), local_i[2] * masked(local_o));
         let area = local_i[2].mul_add(local_o[2], area);
         defined(i, o, [i[2], o[2]], T::select(lit, reflected / T::max(area, T::TINY), zero))

@@ -173,11 +173,11 @@ impl<T: Real> Lobe<T> {
     pub fn on_wave(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>, parts: Parts) -> T {
         let n = n.into();
         let f = self.eval_parts(i, o, n, parts);
-        self.shown_by_wave::<T::Extended>(f, i, o, n.unwrap_or_else(up))
+        self.projected_from_wave::<T::Extended>(f, i, o, n.unwrap_or_else(up))
     }
 
     /// `f cos(theta_o)` of a level surface for f about the normal `n` of its waves.
-    pub(crate) fn shown_by_wave<E: Extended<T>>(&self, f: T, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
+    pub(crate) fn projected_from_wave<E: Extended<T>>(&self, f: T, i: Vec3<T>, o: Vec3<T>, n: Vec3<T>) -> T {
         let zero = T::of(0.0);
         let seen = cosine::<T, E>(i, n) * cosine::<T, E>(o, n) / T::max(n[2] * i[2], T::TINY);
         let value = T::min(f * T::max(seen, zero), T::MAX);

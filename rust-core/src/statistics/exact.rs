@@ -167,7 +167,7 @@ impl Exact {
     /// What waves leave visible of the hits to an observer above them, on average.
     fn visible(&self, source: &Source, o: DVec3) -> f64 {
         let Some(slopes) = self.slopes.as_ref().filter(|_| self.obscuration) else { return 1.0 };
-        let lambda = |v: DVec3| slopes.hidden(self.wind.to_wind(v.truncate()), v.z);
+        let lambda = |v: DVec3| slopes.lambda(self.wind.to_wind(v.truncate()), v.z);
         let (i, o) = (lambda(source.direction), lambda(o));
         (1.0 + i) / (1.0 + i + o)
     }
@@ -176,8 +176,8 @@ impl Exact {
     /// Found on ray casts of 200 seas (`errors_are_bounded`): the slopes and heights of M waves know of each other.
     fn errors(&self, source: &Source, unseen: f64) -> Errors {
         let i = source.direction;
-        let hidden = self.slopes.as_ref().map_or(0.0, |s| s.hidden(self.wind.to_wind(i.truncate()), i.z));
-        let dark = hidden / (1.0 + hidden);
+        let lambda_i = self.slopes.as_ref().map_or(0.0, |s| s.lambda(self.wind.to_wind(i.truncate()), i.z));
+        let dark = lambda_i / (1.0 + lambda_i);
         // Without waves there is one surface, and nothing to integrate.
         let resolution = if self.slopes.is_some() { 0.01 } else { 0.0 };
         Errors {

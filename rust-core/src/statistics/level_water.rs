@@ -5,7 +5,7 @@
 use super::characteristic::variances;
 use super::exact::Exact;
 use super::facet_density;
-use crate::brdf::shadowing::hidden;
+use crate::brdf::shadowing::cos_lambda;
 use crate::brdf::{Facets, Lobe, Reflectance, WindAxes};
 use crate::config::Water;
 use crate::surface::normal;
@@ -16,7 +16,7 @@ use std::f64::consts::{SQRT_2, TAU};
 pub(crate) const NOTHING: f64 = -87.0;
 
 /// Cosines to the normals of waves are at least this.
-pub(crate) const LEANING: f64 = 1e-3;
+pub(crate) const MIN_COS: f64 = 1e-3;
 
 /// What depends on the variances of the slopes alone.
 #[derive(Debug, Clone, Copy)]
@@ -73,15 +73,15 @@ impl BaselineLobe {
     }
 
     /// Smith's term for a direction above the horizon: how much of what it sees drawn waves hide.
-    pub fn hidden(&self, v: [f64; 3]) -> f64 {
+    pub fn lambda(&self, v: [f64; 3]) -> f64 {
         let cos = v[2].max(1e-9);
-        hidden(cos, SQRT_2 * (self.to_wind(DVec2::new(v[0], v[1])) * self.drawn).length()) / cos
+        cos_lambda(cos, SQRT_2 * (self.to_wind(DVec2::new(v[0], v[1])) * self.drawn).length()) / cos
     }
 
     /// Smith's share of what drawn waves leave visible to an observer, of what the source hits.
     pub fn share(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
-        let [hidden_i, hidden_o] = [i, o].map(|v| self.hidden(v));
-        (1.0 + hidden_i) / (1.0 + hidden_i + hidden_o)
+        let [lambda_i, lambda_o] = [i, o].map(|v| self.lambda(v));
+        (1.0 + lambda_i) / (1.0 + lambda_i + lambda_o)
     }
 
     /// Probability that an observer sees nothing of what the source hits: the wave there turns from the observer, were
@@ -96,7 +96,7 @@ impl BaselineLobe {
         let facing = 0.5 * libm::erfc(-limit / SQRT_2);
         let along = (i_wind * self.drawn).dot(o_wind * self.drawn) / spread;
         let density = (-0.5 * limit * limit).exp() / TAU.sqrt();
-        (1.0 - self.share(i, o) * (facing + along / i[2].max(LEANING) * density)).clamp(0.0, 1.0)
+        (1.0 - self.share(i, o) * (facing + along / i[2].max(MIN_COS) * density)).clamp(0.0, 1.0)
     }
 
     /// `G/(cos theta_i cos theta_r)` on level water.
@@ -118,10 +118,10 @@ impl BaselineLobe {
         let half = i + o;
         let slope = self.to_wind(-half.truncate() / half.z) * DVec2::from(self.carried());
         let lean = slope.length_squared();
-        let cos = ((o.z - slope.dot(self.to_wind(o.truncate()))) / (1.0 + lean).sqrt()).max(LEANING);
+        let cos = ((o.z - slope.dot(self.to_wind(o.truncate()))) / (1.0 + lean).sqrt()).max(MIN_COS);
         let mut area = i.z * cos;
         if self.all.shadowing {
-            let part = |cos: f64| hidden(cos, self.all.sigma_shadow * (1.0 - cos * cos).max(0.0).sqrt());
+            let part = |cos: f64| cos_lambda(cos, self.all.sigma_shadow * (1.0 - cos * cos).max(0.0).sqrt());
             area += cos * part(i.z) + i.z * part(cos);
         }
         1.0 / area

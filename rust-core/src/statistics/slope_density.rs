@@ -6,7 +6,7 @@
 //! crosswind; everything is even in both.
 
 use super::characteristic::Component;
-use crate::brdf::shadowing::hidden;
+use crate::brdf::shadowing::cos_lambda;
 use crate::config::Water;
 use crate::error::Error;
 use crate::sea::whitecap;
@@ -144,9 +144,9 @@ impl Slopes {
     }
 
     /// Smith's term (Eq. 66) for a direction, given by its horizontal part upwind and crosswind and its height.
-    pub fn hidden(&self, horizontal: DVec2, height: f64) -> f64 {
+    pub fn lambda(&self, horizontal: DVec2, height: f64) -> f64 {
         let height = height.max(1e-9);
-        hidden(height, SQRT_2 * self.spread(horizontal)) / height
+        cos_lambda(height, SQRT_2 * self.spread(horizontal)) / height
     }
 
     /// The rectangle in which the drawn slopes and a lobe of facets, about a slope and so wide, meet.

@@ -3,7 +3,7 @@
 use crate::Lines;
 use prob_water::brdf::{Fresnel, Reflectance, fresnel::pure_water};
 use prob_water::real::{IERFC, IERFC_END};
-use prob_water::shadowing::hidden;
+use prob_water::shadowing::cos_lambda;
 use prob_water::slopes::{GramCharlier, WIDTH, skewness, variances};
 use prob_water::wind::{friction_velocity, highest_wind_speed, wind_speed};
 use prob_water::{Real, Wind, whitecap};
@@ -76,10 +76,10 @@ fn shadowing(lines: &mut Lines) {
 
     let (theta, sigma) = (lines.zenith(), lines.decades(1e-3, 0.45));
     let (cos, spread) = (theta.cos(), sigma * theta.sin());
-    lines.row("hidden", json!([cos, spread]), json!({"float64": [hidden(cos, spread)]}));
+    lines.row("hidden", json!([cos, spread]), json!({"float64": [cos_lambda(cos, spread)]}));
     let (cos, spread) = (cos as f32, spread as f32);
     let x = json!([f64::from(cos), f64::from(spread)]);
-    lines.row("hidden", x, json!({"float32": [f64::from(hidden(cos, spread))]}));
+    lines.row("hidden", x, json!({"float32": [f64::from(cos_lambda(cos, spread))]}));
 }
 
 fn whitecaps(lines: &mut Lines) {
