@@ -1,8 +1,8 @@
 //! What is off costs nothing: the same evaluations with a term, by code that looks at its switch and finds it off, and by
 //! code compiled without it. `validation/bench/off.py` counts their instructions.
 //!
-//! `cargo run --release -p prob-water-measure --bin off -- CASE with|switched|without COUNT`, and, for lanes, which cost many
-//! times as much where one function is not inlined, `off LEVEL eval|pdf|sample COUNT`.
+//! `cargo run --release -p prob-water-measure --bin off -- CASE with|switched|without COUNT`, and, for lanes, which take several
+//! times as many where one function is not inlined, `off LEVEL eval|pdf|sample COUNT`.
 
 use prob_water::batch::{Columns, SampleColumns, Sources};
 use prob_water::simd::SimdLevel;
