@@ -162,13 +162,13 @@ struct ProbWaterPair {
 struct ProbWaterLocal {
     alignas(16) unsigned char bytes[256];
 };
-void prob_water_local(const Water *, const Where<float> *, ProbWaterLocal *);
-float prob_water_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
-float prob_water_pdf(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o);
-ProbWaterSample prob_water_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
-ProbWaterPair prob_water_leaving(const ProbWaterLocal *, const float *i, const float *o);
-float prob_water_leaving_share(const ProbWaterLocal *, uint32_t parts, const float *i, float reflectance);
-ProbWaterPair prob_water_diffuse(const ProbWaterLocal *);
+void prob_water_place(const Water *, const Where<float> *, ProbWaterLocal *);
+float prob_water_place_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
+float prob_water_place_pdf(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o);
+ProbWaterSample prob_water_place_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
+ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o);
+float prob_water_place_water_leaving_share(const ProbWaterLocal *, uint32_t parts, const float *i, float reflectance);
+ProbWaterPair prob_water_place_diffuse(const ProbWaterLocal *);
 }
 
 template <typename Float> struct ScalarPlace {
@@ -178,24 +178,24 @@ template <typename Float> struct ScalarPlace {
     ProbWaterLocal local;
 
     Float eval(Request r, const Vector3f &i, const Vector3f &o) const {
-        return prob_water_eval(&local, r.parts(), i.data(), o.data(), r.to_light);
+        return prob_water_place_eval(&local, r.parts(), i.data(), o.data(), r.to_light);
     }
     Float pdf(Request r, const Vector3f &i, const Vector3f &o) const {
-        return prob_water_pdf(&local, r.parts(), i.data(), o.data());
+        return prob_water_place_pdf(&local, r.parts(), i.data(), o.data());
     }
     Draw<Float> sample(Request r, const Vector3f &i, const Vector3f &u) const {
-        ProbWaterSample s = prob_water_sample(&local, r.parts(), i.data(), u.data(), r.to_light);
+        ProbWaterSample s = prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light);
         return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, s.pdf, s.whitecap };
     }
     Pair water_leaving(const Vector3f &i, const Vector3f &o) const {
-        ProbWaterPair found = prob_water_leaving(&local, i.data(), o.data());
+        ProbWaterPair found = prob_water_place_water_leaving(&local, i.data(), o.data());
         return { found.first, found.second };
     }
     Float water_leaving_share(Request r, const Vector3f &i, Float reflectance) const {
-        return prob_water_leaving_share(&local, r.parts(), i.data(), reflectance);
+        return prob_water_place_water_leaving_share(&local, r.parts(), i.data(), reflectance);
     }
     Pair diffuse() const {
-        ProbWaterPair found = prob_water_diffuse(&local);
+        ProbWaterPair found = prob_water_place_diffuse(&local);
         return { found.first, found.second };
     }
 };
@@ -210,7 +210,7 @@ template <typename Float> struct ScalarSea {
 
     Place at(const Where<Float> &where) const {
         Place place;
-        prob_water_local(water, &where, &place.local);
+        prob_water_place(water, &where, &place.local);
         return place;
     }
 };

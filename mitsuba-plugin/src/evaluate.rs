@@ -86,13 +86,13 @@ impl Local<'_> {
 
 /// The water at a place.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_local<'a>(water: &'a Water, place: &Place, local: &mut MaybeUninit<Local<'a>>) {
+pub extern "C" fn prob_water_place<'a>(water: &'a Water, place: &Place, local: &mut MaybeUninit<Local<'a>>) {
     local.write(water.local(place));
 }
 
 /// The value. The path runs to the light, which is then at `o`, or comes from it.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_eval(
+pub extern "C" fn prob_water_place_eval(
     local: &Local,
     bits: u32,
     i: &[f32; 3],
@@ -105,9 +105,9 @@ pub extern "C" fn prob_water_eval(
     }
 }
 
-/// Density, 1/sr, with which [`prob_water_sample`] draws `o`.
+/// Density, 1/sr, with which [`prob_water_place_sample`] draws `o`.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_pdf(local: &Local, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
+pub extern "C" fn prob_water_place_pdf(local: &Local, bits: u32, i: &[f32; 3], o: &[f32; 3]) -> f32 {
     match &local.own {
         Some((lobe, normal)) if i[2] > 0.0 && o[2] > 0.0 => lobe.pdf_parts(*i, *o, *normal, parts(bits)),
         Some(_) => 0.0,
@@ -117,7 +117,7 @@ pub extern "C" fn prob_water_pdf(local: &Local, bits: u32, i: &[f32; 3], o: &[f3
 
 /// Draws a direction from three uniform numbers; the sample's `f` is the value.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_sample(
+pub extern "C" fn prob_water_place_sample(
     local: &Local,
     bits: u32,
     i: &[f32; 3],
@@ -137,19 +137,24 @@ pub extern "C" fn prob_water_sample(
 
 /// The value of light from below for a reflectance of 1, and the density of draws by cosine.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_leaving(local: &Local, i: &[f32; 3], o: &[f32; 3]) -> Pair {
+pub extern "C" fn prob_water_place_water_leaving(local: &Local, i: &[f32; 3], o: &[f32; 3]) -> Pair {
     let [value, density] = local.lobe().water_leaving(*i, *o);
     Pair(value, density)
 }
 
 /// The share of draws for the light from below.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_leaving_share(local: &Local, bits: u32, i: &[f32; 3], reflectance: f32) -> f32 {
+pub extern "C" fn prob_water_place_water_leaving_share(
+    local: &Local,
+    bits: u32,
+    i: &[f32; 3],
+    reflectance: f32,
+) -> f32 {
     local.lobe().water_leaving_share(*i, reflectance, parts(bits))
 }
 
 /// Diffuse reflectance of the whitecaps, and the share of water without any.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_diffuse(local: &Local) -> Pair {
+pub extern "C" fn prob_water_place_diffuse(local: &Local) -> Pair {
     Pair(local.lobe().whitecap_albedo(), local.lobe().smooth_fraction)
 }

@@ -21,7 +21,10 @@ const LONG: [(&str, &str); 5] = [
     ("rust-core/src/brdf/lobe.rs", "the closed form in one piece: facets, whitecaps and their mixture"),
     ("rust-core/src/config/vocabulary.rs", "the one list of parameters, and tests of every row beside it"),
     ("rust-core/src/empirical/table.rs", "making and reading a table share the order of its axes"),
-    ("rust-core/tests/empirical.rs", "tests of one model, which share their seas and what they compare with"),
+    (
+        "rust-core/tests/model/empirical.rs",
+        "tests of one model, which share their seas and what they compare with",
+    ),
 ];
 
 /// Uses that close a circle within a module: who uses whom, and why it stays.

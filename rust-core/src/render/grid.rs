@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Cells on a footprint. Normals are interpolated between vertices, which takes slope from the shortest waves; with 3
-/// the loss stays within 5 % of the slopes' variance, facets included (tests/mesh.rs).
+/// the loss stays within 5 % of the slopes' variance, facets included (tests/model/mesh.rs).
 pub const CELLS: f64 = 3.0;
 /// Bytes that a vertex takes at the peak, while Mitsuba builds its tree over the triangles: 320 measured at
 /// a million vertices, 290 at four (validation/bench/surface.py).

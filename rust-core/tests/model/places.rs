@@ -1,8 +1,6 @@
 //! Places of their own: a footprint that changes, and one drawn sea on a level surface.
 
-mod common;
-
-use common::worse;
+use crate::common::worse;
 use prob_water::brdf::up;
 use prob_water::{EnsembleLobe, FacetTable, InstanceLobe, Parameters, SlopeMeasure, Surface, Wind};
 use std::f64::consts::PI;

@@ -1,8 +1,6 @@
 //! One sea, lobe or table used by many threads at once: every thread gets, bit for bit, what a single one gets.
 
-mod common;
-
-use common::{direction, water};
+use crate::common::{direction, water};
 use prob_water::brdf::up;
 use prob_water::{
     EmpiricalLobe, EnsembleLobe, FacetTable, InstanceLobe, OffPlaneModel, Parameters, Surface, Table, Water,

@@ -1,8 +1,6 @@
 //! The core against vectors of an independent float64 implementation: 1e-10 relative.
 
-mod common;
-
-use common::rows;
+use crate::common::rows;
 use prob_water::spectrum::Spectrum;
 use prob_water::{
     Fresnel, Lobe, Parameters, Readings, RealisedSurface, Salinity, SlopeMeasure, Surface, Wind, slopes,

@@ -1,8 +1,6 @@
 //! The sea seen from afar against the ray cast, against exact means, and what must hold of any BRDF.
 
-mod common;
-
-use common::{direction, dot, water, worse};
+use crate::common::{direction, dot, water, worse};
 use prob_water::{Average, Engagement, Ensemble, EnsembleLobe, Exact, Surface, Water, WhitecapMode};
 
 fn sea(w: f64, change: impl FnOnce(&mut prob_water::Parameters)) -> Water {

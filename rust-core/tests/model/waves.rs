@@ -1,8 +1,6 @@
 //! Drawn surfaces against the integrals of their spectrum.
 
-mod common;
-
-use common::water;
+use crate::common::water;
 use prob_water::spectrum::spreading;
 use prob_water::surface::{Draws, InstanceRng, Waves};
 use prob_water::{Surface, Water, slopes};
@@ -120,7 +118,9 @@ fn derivatives_and_bounds() {
         let acceleration = (before + after - 2.0 * point.height) / 1e-6;
         assert!((point.acceleration - acceleration).abs() < 1e-3, "{acceleration} {}", point.acceleration);
         let n = point.normal();
-        assert!((n[0] + point.slope[0] * n[2]).abs() < 1e-15 && (common::dot(n, n) - 1.0).abs() < 1e-14);
+        assert!(
+            (n[0] + point.slope[0] * n[2]).abs() < 1e-15 && (crate::common::dot(n, n) - 1.0).abs() < 1e-14
+        );
         for i in 0..2000 {
             let p = surface.point([f64::from(i) * 0.37, f64::from(i) * -0.11]);
             assert!(p.height.abs() <= surface.highest());

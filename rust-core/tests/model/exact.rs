@@ -1,8 +1,6 @@
 //! Exact statistics against draws: of slopes alone, where nothing is obscured, and of the full ray cast.
 
-mod common;
-
-use common::{direction, dot, water};
+use crate::common::{direction, dot, water};
 use prob_water::surface::{Draws, InstanceRng};
 use prob_water::{Engagement, Ensemble, Exact, Surface, Water, whitecap};
 use rayon::prelude::*;

@@ -1,8 +1,6 @@
 //! Statistics over drawn surfaces against an independent implementation and against what must hold of any.
 
-mod common;
-
-use common::{direction, rows, water};
+use crate::common::{direction, rows, water};
 use prob_water::statistics::Sighting;
 use prob_water::{Engagement, Ensemble, Statistics, Surface, Water, WhitecapMode};
 

@@ -1,8 +1,6 @@
 //! What any BRDF of water must hold: albedo at most 1, reciprocity, finite values, limits.
 
-mod common;
-
-use common::{HURRICANES, UP, WINDS, direction, integrate, water, worse};
+use crate::common::{HURRICANES, UP, WINDS, direction, integrate, water, worse};
 use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Water};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 

@@ -1,8 +1,6 @@
 //! Ray casting against a march in steps far smaller than any wave, and against the report's own march.
 
-mod common;
-
-use common::water;
+use crate::common::water;
 use glam::DVec3;
 use prob_water::surface::SurfaceRay;
 use prob_water::surface::{Draws, InstanceRng};

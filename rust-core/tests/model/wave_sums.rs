@@ -1,8 +1,6 @@
 //! Wave sums in lanes against the float64 reference, and phases against twice as many digits.
 
-mod common;
-
-use common::worse;
+use crate::common::worse;
 use prob_water::simd::SimdLevel;
 use prob_water::surface::Component;
 use prob_water::surface::Point;

@@ -1,8 +1,6 @@
 //! Draws by importance where facets are too narrow for plain ones, and what statistics say of themselves.
 
-mod common;
-
-use common::{UP, direction};
+use crate::common::{UP, direction};
 use prob_water::{
     Engagement, Ensemble, Error, Exact, Parameters, Proposal, Surface, Water, WhitecapMode, Wind,
 };

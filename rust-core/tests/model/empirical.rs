@@ -1,8 +1,6 @@
 //! The report's empirical model: its numbers against the full model, and what is made of them.
 
-mod common;
-
-use common::worse;
+use crate::common::worse;
 use prob_water::empirical::{Moments, ReferenceModel};
 use prob_water::planes::Planes;
 use prob_water::table::{Grid, Plan};

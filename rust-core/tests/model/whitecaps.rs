@@ -1,8 +1,6 @@
 //! Whitecaps of drawn waves (Eqs. 52-54): how many there are against Eq. 51, and how long they last.
 
-mod common;
-
-use common::water;
+use crate::common::water;
 use prob_water::statistics::Samples;
 use prob_water::surface::{Draws, InstanceRng};
 use prob_water::{Aim, Engagement, Ensemble, Surface, Water, WhitecapMode, whitecap};

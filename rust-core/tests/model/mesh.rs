@@ -1,8 +1,6 @@
 //! The mesh of a realised sea: its triangles, its vertices against the surface, and the statistics of what it shows.
 
-mod common;
-
-use common::{water, worse};
+use crate::common::{water, worse};
 use prob_water::grid::{CELLS, Grid};
 use prob_water::mesh::Vertices;
 use prob_water::spectrum::spreading;

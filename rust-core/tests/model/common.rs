@@ -1,5 +1,4 @@
 //! What several test files need.
-#![allow(dead_code)]
 
 use prob_water::{Lobe, Parameters, Water, Wind};
 

@@ -1,8 +1,6 @@
 //! What holds of any input: texts for parameters, directions, damaged tables. Proptest draws them, and shrinks what fails.
 
-mod common;
-
-use common::direction;
+use crate::common::direction;
 use prob_water::batch::Rows;
 use prob_water::brdf::up;
 use prob_water::table::{Grid, Plan};

@@ -1,8 +1,6 @@
 //! Draws against their density, by integrals over both, and the bound on sample weights.
 
-mod common;
-
-use common::{HURRICANES, UP, WINDS, direction, dot, integrate, water, worse};
+use crate::common::{HURRICANES, UP, WINDS, direction, dot, integrate, water, worse};
 use prob_water::{Lobe, SlopeMeasure};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 

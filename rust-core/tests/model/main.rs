@@ -1,0 +1,22 @@
+//! The library's tests, of its public items: one program, which is compiled and linked once.
+
+mod casting;
+mod common;
+mod empirical;
+mod energy;
+mod ensemble;
+mod ensemble_lobe;
+mod exact;
+mod importance;
+mod lanes;
+mod mesh;
+mod nan;
+mod places;
+mod properties;
+mod reference;
+mod sampling;
+mod surfaces;
+mod threads;
+mod wave_sums;
+mod waves;
+mod whitecaps;
