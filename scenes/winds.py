@@ -39,5 +39,5 @@ for wind_speed in [2, 5, 10]:
     parameters[name] = wind_speed
     parameters.update()
     image = mi.render(scene)
-    mi.util.write_bitmap(str(directory / f"wind_{wind_speed}.exr"), image)
+    mi.Bitmap(image).write(str(directory / f"wind_{wind_speed}.exr"))
     print(f"{wind_speed} m/s: brightest pixel {max(image.array):.0f} W/(m^2 sr nm)")

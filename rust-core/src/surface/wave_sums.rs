@@ -25,8 +25,8 @@ pub struct WaveSums {
 
 /// Numbers in the widest vector.
 const WIDEST: usize = 16;
-/// Waves that are summed in float32 before float64 takes their sum.
-const BLOCK: usize = 64 * WIDEST;
+/// Waves of a lane that are summed in float32 before float64 takes their sum.
+const BLOCK: usize = 32;
 
 impl WaveSums {
     /// Of a surface.
@@ -91,7 +91,7 @@ impl Kernel for Sums<'_> {
             let mut all = [0.0; 4];
             let mut first = 0;
             while first < self.waves.len() {
-                let end = (first + BLOCK).min(self.waves.len());
+                let end = (first + BLOCK * V::WIDTH).min(self.waves.len());
                 let block = self.waves.block::<V>(*place, first, end);
                 all = [all[0] + block[0], all[1] + block[1], all[2] + block[2], all[3] + block[3]];
                 first = end;

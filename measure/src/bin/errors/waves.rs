@@ -120,7 +120,7 @@ fn cast(lines: &mut Lines) {
     lines.row("cast", x, json!({"float64": hit.to_array()}));
 }
 
-/// Vertices of a mesh of 512 waves, to 10 km, after an hour.
+/// Vertices of a mesh of 512 waves, to 10 km, after an hour: as many as a median needs.
 fn mesh(lines: &mut Lines) {
     let parameters = Parameters { components: 512, ..drawn(24.0, 0.1) };
     let water: Water = parameters.configure().expect("the parameters are valid");
@@ -131,7 +131,7 @@ fn mesh(lines: &mut Lines) {
     let mut first = 0;
     for ring in &mesh.grid.rings {
         let count = mesh.grid.on(ring);
-        if lines.uniform(0.0, 1.0) < lines.rows as f64 / 40.0 / mesh.grid.rings.len() as f64 {
+        if lines.uniform(0.0, 1.0) < (0.025 * lines.rows as f64).max(25.0) / mesh.grid.rings.len() as f64 {
             let v = first + lines.uniform(0.0, count as f64 - 1.0) as usize;
             let place = [0, 1].map(|k| f64::from(level.texcoords[2 * v + k]));
             let corner = |of: &[f32], k: usize| f64::from(of[3 * v + k]);
