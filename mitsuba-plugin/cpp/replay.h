@@ -125,14 +125,14 @@ private:
                 case Op::Not: m[k] = !m[a]; break;
                 case Op::Select: x[k] = dr::select(m[a], x[b], x[c]); break;
                 case Op::Round: x[k] = dr::round(x[a]); break;
-                case Op::Floor: x[k] = Float(UInt32(x[a])); break;
+                case Op::Floor: x[k] = Float(Int(x[a])); break;
                 case Op::ScaleByPowerOf2: x[k] = x[a] * power_of_2(x[b]); break;
                 case Op::Exponent:
                     x[k] = Float((dr::reinterpret_array<Int>(dr::detach(x[a])) - 0x3f3504f3) >> 23);
                     break;
                 case Op::FlipSign: x[k] = dr::mulsign(x[a], x[b]); break;
                 case Op::Detach: x[k] = dr::detach(x[a]); break;
-                case Op::Lookup: packets[k] = lookup(layout[a], UInt32(x[b]), m[c]); break;
+                case Op::Lookup: packets[k] = lookup(layout[a], UInt32(Int(x[b])), m[c]); break;
                 case Op::Element: x[k] = packets[a][b]; break;
                 default: break;
             }

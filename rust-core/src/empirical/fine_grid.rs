@@ -104,6 +104,12 @@ fn corners<T: Real>(p: &[T], s: T, t: T) -> T {
     between(t, between(s, p[0], p[1]), between(s, p[2], p[3]))
 }
 
+/// The mask of lookups whose place is clamped to the table.
+#[inline(always)]
+fn everywhere<T: Real>() -> T::Mask {
+    T::lt(T::of(0.0), T::of(1.0))
+}
+
 impl<T: Tabulated> FineGrid<T> {
     /// f of some of its parts, 1/sr (Eq. 90), for unit vectors to source and observer.
     #[inline(always)]
@@ -111,14 +117,17 @@ impl<T: Tabulated> FineGrid<T> {
         let zero = T::of(0.0);
         let lit = T::lt(zero, i[2]) & T::lt(zero, o[2]);
         let [above_i, above_o] = [i, o].map(|v| [v[0], v[1], T::max(v[2], zero)]);
+        if !T::may_hold(lit) {
+            return defined(i, o, [i[2], o[2]], zero);
+        }
         let place = self.place(above_i, above_o);
-        let [ratio, share] = self.in_plane(&place, lit);
+        let [ratio, share] = self.in_plane(&place);
         let mut f = zero;
         if parts.facets {
             let (density, visible) = self.level(above_i, above_o, &place);
             let mut exponent = ratio + density;
             if self.across == OffPlaneModel::Report {
-                let [sigma, delta] = self.widths(&place, lit);
+                let [sigma, delta] = self.widths(&place);
                 let x = (place.phi - delta) * (sigma * place.narrowing).recip();
                 exponent = exponent - x * x;
             }
@@ -132,28 +141,30 @@ impl<T: Tabulated> FineGrid<T> {
 
     /// The logarithm of the ratio to level water, and [`SHARES`] times the share of whitecaps.
     #[inline(always)]
-    fn in_plane(&self, place: &Place<T>, lit: T::Mask) -> [T; 2] {
+    fn in_plane(&self, place: &Place<T>) -> [T; 2] {
         let ((a, s), (b, t), (k, r)) = (place.incidence, place.azimuth, place.theta);
         let thetas = T::of(THETAS as f64);
         let index = a.mul_add(T::of(AZIMUTHS as f64), b).mul_add(thetas, k);
         let far = index + T::of((AZIMUTHS * THETAS) as f64);
         if !self.whitecaps {
-            let near = T::lookup::<4>(&self.in_plane, index, lit);
-            let far = T::lookup::<4>(&self.in_plane, far, lit);
+            let near = T::lookup::<4>(&self.in_plane, index, everywhere::<T>());
+            let far = T::lookup::<4>(&self.in_plane, far, everywhere::<T>());
             let cell = [0, 1, 2, 3].map(|n| between(s, near[n], far[n]));
             return [corners(&cell, t, r), T::of(0.0)];
         }
-        let (near, far) =
-            (T::lookup::<8>(&self.in_plane, index, lit), T::lookup::<8>(&self.in_plane, far, lit));
+        let (near, far) = (
+            T::lookup::<8>(&self.in_plane, index, everywhere::<T>()),
+            T::lookup::<8>(&self.in_plane, far, everywhere::<T>()),
+        );
         let cell: [T; 8] = std::array::from_fn(|n| between(s, near[n], far[n]));
         [corners(&cell[..4], t, r), corners(&cell[4..], t, r)]
     }
 
     /// sigma and delta of the lobe across the plane.
     #[inline(always)]
-    fn widths(&self, place: &Place<T>, lit: T::Mask) -> [T; 2] {
+    fn widths(&self, place: &Place<T>) -> [T; 2] {
         let ((a, s), (b, t)) = (place.incidence, place.azimuth);
-        let p = T::lookup::<8>(&self.widths, a.mul_add(T::of(AZIMUTHS as f64), b), lit);
+        let p = T::lookup::<8>(&self.widths, a.mul_add(T::of(AZIMUTHS as f64), b), everywhere::<T>());
         [corners(&p[..4], t, s), corners(&p[4..], t, s)]
     }
 

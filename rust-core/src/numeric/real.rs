@@ -51,6 +51,8 @@ pub trait Real:
     fn lt(self, other: Self) -> Self::Mask;
     /// `a` where `mask` holds, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// Whether a mask may hold: where not, scalars leave out what depends on it. Always for lanes.
+    fn may_hold(mask: Self::Mask) -> bool;
     /// The smaller one; `other` if `self` is not a number.
     fn min(self, other: Self) -> Self;
     /// The larger one; `other` if `self` is not a number.
@@ -158,6 +160,9 @@ macro_rules! scalar {
             }
             fn select(mask: bool, a: Self, b: Self) -> Self {
                 if mask { a } else { b }
+            }
+            fn may_hold(mask: bool) -> bool {
+                mask
             }
             fn min(self, other: Self) -> Self {
                 if self < other { self } else { other }

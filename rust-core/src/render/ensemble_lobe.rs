@@ -178,6 +178,9 @@ impl<T: Tabulated> MeanLobe<T> {
     pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
         let zero = T::of(0.0);
         let lit = T::lt(zero, i[2]) & T::lt(zero, o[2]);
+        if !T::may_hold(lit) {
+            return defined(i, o, [i[2], o[2]], zero);
+        }
         let wind = &self.lobe.facets.wind;
         // Products of smaller cosines might be 0.
         let above = |v: Vec3<T>| [v[0], v[1], T::max(v[2], T::of(TINY))];
@@ -211,6 +214,9 @@ impl<T: Tabulated> MeanLobe<T> {
         let lean = -T::max(h[2], T::SMALL).recip();
         let cell = self.cell([h[0] * lean, h[1] * lean], lit);
         let [density, mean_u, mean_c, variance_u, variance_c, ..] = cell;
+        if !T::may_hold(T::lt(T::of(0.0), density)) {
+            return T::of(0.0);
+        }
         // The vertical plane of the slopes: of the two directions, or of the observer. Either way round they are the same.
         let across = if self.report { [o[0], o[1]] } else { [o[0] - i[0], o[1] - i[1]] };
         let inverse = T::max(across[0].mul_add(across[0], across[1] * across[1]), T::of(1e-20)).rsqrt();
@@ -255,6 +261,9 @@ impl<T: Tabulated> MeanLobe<T> {
         let cosine = |v: Local<T>| (v[2] - v[0].mul_add(slope[0], v[1] * slope[1])) * n_z;
         let (cos_i, cos_o) = (cosine(i), cosine(o));
         let lit = T::lt(zero, cos_i) & T::lt(zero, cos_o);
+        if !T::may_hold(lit) {
+            return zero;
+        }
         let tangential = |v: Local<T>| [0, 1].map(|k| v[2].mul_add(slope[k], v[k]) * n_z);
         let sigmas = [facets.sigma_u, facets.sigma_c];
         let mut spreads = [zero; 2];

@@ -178,6 +178,10 @@ impl<V: Arithmetic> Real for Lanes<V> {
         Self(V::select(mask, a.0, b.0))
     }
     #[inline(always)]
+    fn may_hold(_mask: V::Mask) -> bool {
+        true
+    }
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self(self.0.min(other.0))
     }

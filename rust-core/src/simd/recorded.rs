@@ -387,7 +387,9 @@ impl Tabulated for Traced {
     fn step(self, steps: u32) -> (Self, Self) {
         let Node(node) = self.0.detach() else { unreachable!("places come from inputs") };
         let last = Self::splat((steps - 1) as f32);
-        let step = Self::min(Lanes(Node(push(Operation::Floor, [node, 0, 0]))), last);
+        // What is not a number has no integer part: lookups must stay within their table.
+        let floor = Lanes(Node(push(Operation::Floor, [node, 0, 0])));
+        let step = Self::min(Self::max(floor, Self::splat(0.0)), last);
         (step, self - step)
     }
 
