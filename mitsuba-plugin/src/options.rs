@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Numbers that can be changed, where they are set and matter.
-const EXPOSED: [&str; 9] = [
+const EXPOSED: [&str; 10] = [
     "wind_speed",
     "wind_height",
     "friction_velocity",
@@ -18,9 +18,10 @@ const EXPOSED: [&str; 9] = [
     "time",
     "wavelength",
     "ior",
+    "extinction",
 ];
 /// Of these, on a shape, whose sea is the shape's.
-const EXPOSED_WHEN_LENT: [&str; 2] = ["wavelength", "ior"];
+const EXPOSED_WHEN_LENT: [&str; 3] = ["wavelength", "ior", "extinction"];
 
 /// Beside the vocabulary.
 const PIXEL_ANGLE: &str = "pixel_angle";

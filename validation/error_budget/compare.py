@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 import numpy as np
-from mpmath import mp, mpf
+from mpmath import mp, mpc, mpf
 
 from validation.error_budget import model
 from validation.error_budget.lobe import Sea, Value
@@ -96,6 +96,10 @@ class Comparison:
 
     def fresnel(self, x, y) -> Found:
         yield from self.each("fresnel", y, [model.fresnel(*exact(x))], relative)
+
+    def absorbing(self, x, y) -> Found:
+        ior, extinction, cos = exact(x)
+        yield from self.each("absorbing", y, [model.fresnel(mpc(ior, extinction), cos)], relative)
 
     def index(self, x, y) -> Found:
         yield from self.each("index", y, [model.index(mpf(x[0]))], relative)

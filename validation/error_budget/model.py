@@ -90,11 +90,11 @@ def schlick(ior: mpf, cos: mpf) -> mpf:
 
 
 def fresnel(ior: mpf, cos: mpf) -> mpf:
-    """Unpolarised, by the angle of refraction."""
+    """Unpolarised, by the angle of refraction; the index may be complex."""
     inside = mp.sqrt(1 - (1 - cos**2) / ior**2)
     senkrecht = (cos - ior * inside) / (cos + ior * inside)
     parallel = (ior * cos - inside) / (ior * cos + inside)
-    return (senkrecht**2 + parallel**2) / 2
+    return (abs(senkrecht)**2 + abs(parallel)**2) / 2
 
 
 @cache

@@ -80,6 +80,8 @@ GROUPS = [
             "1 - cos, to the fifth power", float64=(5e-16, 3e-15), float32=(2e-7, 1.5e-6)),
         row("fresnel", "Fresnel's equations", "-", "relative", "n 1.1 to 2, to 89.9999 degrees", "as it is",
             "rounding of the quotients, squared", float64=(6e-16, 4e-15), float32=(3e-7, 3e-6)),
+        row("absorbing", "Fresnel's equations, complex index", "-", "relative", "n 1.1 to 2, k 0.001 to 3, to 89.9999 degrees",
+            "as it is", "n^2 - k^2 - sin^2 where n and k are alike", float64=(6e-16, 1e-14), float32=(3e-7, 3e-6)),
         row("schlick_choice", "Schlick against Fresnel", "63", "relative", "n 1.3 to 1.4, to 89.9999 degrees",
             "as it is; `fresnel = \"exact\"` has none of it", "the model's own choice", approximation=(3e-2, 0.3)),
         row("ierfc", "ierfc", "66", "over x + ierfc(x)/2", "0 to 9", "as it is, towards the horizon",

@@ -60,6 +60,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         fetch: 7654.321,
         wavelength: 1.064,
         ior: Some(4.0 / 3.0),
+        extinction: Some(1.0 / 7.0),
         water: Salinity::Fresh,
         fresnel: Fresnel::Exact,
         slope_measure: SlopeMeasure::Slope,

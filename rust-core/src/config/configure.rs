@@ -28,10 +28,10 @@ impl Parameters {
         if let Some(ior) = self.ior {
             check("ior", ior, ior)?;
         }
-        let ior = self.ior.unwrap_or_else(|| {
-            let salt = if self.water == Salinity::Ocean { fresnel::SEA_SALT } else { 0.0 };
-            fresnel::pure_water(self.wavelength) + salt
-        });
+        if let Some(extinction) = self.extinction {
+            check("extinction", extinction, extinction)?;
+        }
+        let [ior, extinction] = self.index();
         let variances = slopes::variances(&wind, footprint);
         let whitecap_fraction = whitecap::fraction(wind.w10);
         Ok(Water {
@@ -39,10 +39,11 @@ impl Parameters {
             footprint,
             wind,
             ior,
+            extinction,
             variances,
             whitecap_fraction,
             lobe: Lobe {
-                facets: self.facets(&wind, ior, variances),
+                facets: self.facets(&wind, [ior, extinction], variances),
                 whitecap_fraction: 0.0,
                 smooth_fraction: 1.0,
                 whitecap_brdf: whitecap::brdf(self.wavelength),
@@ -51,8 +52,18 @@ impl Parameters {
         })
     }
 
+    /// The complex refractive index, n and k.
+    fn index(&self) -> [f64; 2] {
+        let [pure, absorption] = fresnel::pure_water(self.wavelength);
+        let salt = if self.water == Salinity::Ocean { fresnel::SEA_SALT } else { 0.0 };
+        let ior = self.ior.unwrap_or(pure + salt);
+        let transparent = self.ior.is_some() || self.readings == Readings::AsPrinted;
+        let extinction = self.extinction.unwrap_or(if transparent { 0.0 } else { absorption });
+        [ior, fresnel::relevant_extinction(ior, extinction)]
+    }
+
     /// The facets of a wind, an index and slope variances.
-    pub(crate) fn facets(&self, wind: &WindProfile, ior: f64, variances: [f64; 2]) -> Facets<f64> {
+    pub(crate) fn facets(&self, wind: &WindProfile, index: [f64; 2], variances: [f64; 2]) -> Facets<f64> {
         let [sigma_u, sigma_c] = variances.map(f64::sqrt);
         let as_printed = self.readings == Readings::AsPrinted;
         let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
@@ -72,7 +83,7 @@ impl Parameters {
             wind: WindAxes::new(self.wind_direction),
             correction: GramCharlier::new(slopes::skewness(wind), as_printed),
             sigma_shadow: shadowing::sigma(wind.w10),
-            reflectance: Reflectance::new(ior, self.fresnel),
+            reflectance: Reflectance::new(index, self.fresnel),
             slope_measure,
             gram_charlier: self.gram_charlier,
             shadowing: self.shadowing,

@@ -106,6 +106,9 @@ pub struct Parameters {
     pub wavelength: f64,
     /// Refractive index; else that of `water` at `wavelength`.
     pub ior: Option<f64>,
+    /// Extinction coefficient k, the imaginary part of the index; else that of water at `wavelength`, or 0 with an `ior` or
+    /// [`Readings::AsPrinted`].
+    pub extinction: Option<f64>,
     /// Salt or fresh.
     pub water: Salinity,
     /// Reflectance of a facet.
@@ -139,6 +142,7 @@ impl Default for Parameters {
             fetch: f64::INFINITY,
             wavelength: 0.55,
             ior: None,
+            extinction: None,
             water: Salinity::Ocean,
             fresnel: Fresnel::Schlick,
             slope_measure: SlopeMeasure::Angle,
@@ -161,6 +165,8 @@ pub struct Water {
     pub wind: WindProfile,
     /// Refractive index in use.
     pub ior: f64,
+    /// Extinction coefficient in use; 0 where it changes nothing.
+    pub extinction: f64,
     /// Slope variances of the facets, upwind and crosswind (Eqs. 74-77).
     pub variances: [f64; 2],
     /// F_WC (Eq. 51), whether or not whitecaps are blended in.

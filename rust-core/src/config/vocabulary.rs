@@ -109,7 +109,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 24] = [
+pub const ENTRIES: [Entry; 25] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -298,6 +298,20 @@ pub const ENTRIES: [Entry; 24] = [
         },
     },
     Entry {
+        name: "extinction",
+        unit: "",
+        default: "",
+        allowed: "0 to 10",
+        help: "imaginary part k of the index; else Hale and Querry's at the wavelength, or 0 with an `ior`",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: Access {
+            holds: |k| (0.0..=10.0).contains(&k),
+            get: |p| p.extinction.map(Value::Number),
+            set: |b, name, value| in_range(name, value).map(|k| b.parameters.extinction = Some(k)),
+        },
+    },
+    Entry {
         name: "water",
         unit: "",
         default: "ocean",
@@ -379,11 +393,12 @@ pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Re
 pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
 
 /// The parameters that do not describe the sea, but how its surface reflects.
-pub const OPTICS: [&str; 9] = [
+pub const OPTICS: [&str; 10] = [
     "average",
     "across",
     "wavelength",
     "ior",
+    "extinction",
     "fresnel",
     "slope_measure",
     "readings",
@@ -633,6 +648,7 @@ mod tests {
             ("fetch", Value::Number(5e3)),
             ("wavelength", Value::Number(1.064)),
             ("ior", Value::Number(1.33)),
+            ("extinction", Value::Number(0.25)),
             ("water", Value::Text("fresh".into())),
             ("fresnel", Value::Text("exact".into())),
             ("slope_measure", Value::Text("slope".into())),
@@ -691,6 +707,7 @@ mod tests {
                 fetch: 5e15,
                 wavelength: 1.064,
                 ior: Some(4.0 / 3.0),
+                extinction: Some(1.0 / 7.0),
                 water: Salinity::Fresh,
                 fresnel: Fresnel::Exact,
                 slope_measure: SlopeMeasure::Slope,
@@ -838,6 +855,8 @@ mod tests {
             ("fetch", number(-5.0)),
             ("wavelength", number(0.1)),
             ("ior", number(0.99)),
+            ("extinction", number(-1e-9)),
+            ("extinction", number(10.1)),
             ("ior", number(f64::INFINITY)),
             ("whitecaps", number(1.0)),
             ("fresnel", Value::Flag(true)),

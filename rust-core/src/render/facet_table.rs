@@ -31,8 +31,11 @@ impl FacetTable<f64> {
         let row = |node: usize| {
             let last = node == NODES - 1;
             let footprint = if last { f64::INFINITY } else { (RANGE[0] + step() * node as f64).exp() };
-            let f =
-                water.parameters.facets(&water.wind, water.ior, slopes::variances(&water.wind, footprint));
+            let f = water.parameters.facets(
+                &water.wind,
+                [water.ior, water.extinction],
+                slopes::variances(&water.wind, footprint),
+            );
             // Where no bound is in force nothing reaches the slack.
             let bound = if f.bounded { f.bound } else { BOUND_SLACK };
             [f.sigma_u, f.sigma_c, f.steep_gain, bound, f.proposal[0], f.proposal[1], 0.0, 0.0]

@@ -32,8 +32,13 @@ impl BaselineLobe {
     pub fn new(water: &Water) -> Self {
         let [drawn_u, drawn_c, _] = variances(&water.waves());
         let [facets_u, facets_c] = water.variances;
-        let all = water.parameters.facets(&water.wind, water.ior, [facets_u + drawn_u, facets_c + drawn_c]);
-        let reflectance = Reflectance { normal: 1.0, excess: 0.0, exact: false };
+        let all = water.parameters.facets(
+            &water.wind,
+            [water.ior, water.extinction],
+            [facets_u + drawn_u, facets_c + drawn_c],
+        );
+        let reflectance =
+            Reflectance { normal: 1.0, excess: 0.0, absorption: 0.0, exact: false, absorbing: false };
         let drawn = DVec2::new(drawn_u, drawn_c).powf(0.5);
         Self { all: Facets { reflectance, bounded: false, ..all }, drawn }
     }

@@ -54,14 +54,21 @@ fn reflectance(lines: &mut Lines) {
     let ior = lines.uniform(1.1, 2.0);
     let cos = lines.zenith().cos();
     for (stage, fresnel) in [("schlick", Fresnel::Schlick), ("fresnel", Fresnel::Exact)] {
-        let rho = Reflectance::new(ior, fresnel).eval(cos);
+        let rho = Reflectance::new([ior, 0.0], fresnel).eval(cos);
         lines.row(stage, json!([ior, cos]), json!({"float64": [rho]}));
         let single = cos as f32;
-        let rho = Reflectance::new(ior, fresnel).cast::<f32>().eval(single);
+        let rho = Reflectance::new([ior, 0.0], fresnel).cast::<f32>().eval(single);
         lines.row(stage, json!([ior, f64::from(single)]), json!({"float32": [f64::from(rho)]}));
     }
+    let k = lines.decades(1e-3, 3.0);
+    let absorbing = Reflectance::new([ior, k], Fresnel::Exact);
+    lines.row("absorbing", json!([ior, k, cos]), json!({"float64": [absorbing.eval(cos)]}));
+    let single = cos as f32;
+    let rho = absorbing.cast::<f32>().eval(single);
+    lines.row("absorbing", json!([ior, k, f64::from(single)]), json!({"float32": [f64::from(rho)]}));
     let wavelength = lines.decades(0.2, 200.0);
-    lines.row("index", json!([wavelength]), json!({"float64": [pure_water(wavelength)]}));
+    let [n, _] = pure_water(wavelength);
+    lines.row("index", json!([wavelength]), json!({"float64": [n]}));
 }
 
 fn shadowing(lines: &mut Lines) {
