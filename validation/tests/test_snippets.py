@@ -78,7 +78,7 @@ def test_plugin_documentation(use):
     exposed = set(re.search(r"^\.\. exposed: (.*)$", RST.read_text(), re.MULTILINE).group(1).split(", "))
     found = set()
     for wind in [{"wind_speed": 7}, {"friction_velocity": 8}, {"beaufort": 3}]:
-        bsdf = mi.load_dict({"type": "prob_water", "surface": "instance", "ior": 1.34, **wind})
+        bsdf = mi.load_dict({"type": "prob_water", "surface": "instance", "ior": 1.34, "extinction": 0.1, **wind})
         found |= {name for name, _ in mi.traverse(bsdf)}
     assert found == exposed
 

@@ -88,5 +88,6 @@ fn main() {
     lobe::write(&mut lines);
     waves::write(&mut lines);
     means::write(&mut lines);
+    scalars::absorption(&mut lines);
     lines.out.flush().expect("standard output takes it");
 }

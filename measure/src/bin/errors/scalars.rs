@@ -60,15 +60,22 @@ fn reflectance(lines: &mut Lines) {
         let rho = Reflectance::new([ior, 0.0], fresnel).cast::<f32>().eval(single);
         lines.row(stage, json!([ior, f64::from(single)]), json!({"float32": [f64::from(rho)]}));
     }
-    let k = lines.decades(1e-3, 3.0);
-    let absorbing = Reflectance::new([ior, k], Fresnel::Exact);
-    lines.row("absorbing", json!([ior, k, cos]), json!({"float64": [absorbing.eval(cos)]}));
-    let single = cos as f32;
-    let rho = absorbing.cast::<f32>().eval(single);
-    lines.row("absorbing", json!([ior, k, f64::from(single)]), json!({"float32": [f64::from(rho)]}));
     let wavelength = lines.decades(0.2, 200.0);
     let [n, _] = pure_water(wavelength);
     lines.row("index", json!([wavelength]), json!({"float64": [n]}));
+}
+
+/// Fresnel's equations of a complex index.
+pub fn absorption(lines: &mut Lines) {
+    for _ in 0..lines.rows {
+        let (n, k) = (lines.uniform(1.1, 2.0), lines.decades(1e-3, 3.0));
+        let absorbing = Reflectance::new([n, k], Fresnel::Exact);
+        let cos = lines.zenith().cos();
+        lines.row("absorbing", json!([n, k, cos]), json!({"float64": [absorbing.eval(cos)]}));
+        let single = cos as f32;
+        let rho = absorbing.cast::<f32>().eval(single);
+        lines.row("absorbing", json!([n, k, f64::from(single)]), json!({"float32": [f64::from(rho)]}));
+    }
 }
 
 fn shadowing(lines: &mut Lines) {

@@ -131,7 +131,7 @@ fn mesh(lines: &mut Lines) {
     let mut first = 0;
     for ring in &mesh.grid.rings {
         let count = mesh.grid.on(ring);
-        if lines.uniform(0.0, 1.0) < (0.025 * lines.rows as f64).max(25.0) / mesh.grid.rings.len() as f64 {
+        if lines.uniform(0.0, 1.0) < (0.025 * lines.rows as f64).max(60.0) / mesh.grid.rings.len() as f64 {
             let v = first + lines.uniform(0.0, count as f64 - 1.0) as usize;
             let place = [0, 1].map(|k| f64::from(level.texcoords[2 * v + k]));
             let corner = |of: &[f32], k: usize| f64::from(of[3 * v + k]);
