@@ -328,6 +328,17 @@ impl<T: Real> Lobe<T> {
 
 impl<T: Scalar> Lobe<T> {
     /// Draws an observer's direction for the source `i`, with three uniform numbers of [0, 1).
+    ///
+    /// ```
+    /// use prob_water::Parameters;
+    ///
+    /// let lobe = Parameters::default().configure()?.lobe()?;
+    /// let source = [0.6, 0.0, 0.8];
+    /// let drawn = lobe.sample(source, None, [0.3, 0.6, 0.9]);
+    /// assert_eq!(drawn.pdf, lobe.pdf(source, drawn.direction, None)); // 1/sr
+    /// assert_eq!(drawn.f, lobe.eval(source, drawn.direction, None)); // 1/sr
+    /// # Ok::<(), prob_water::Error>(())
+    /// ```
     #[inline(always)]
     pub fn sample(&self, i: Vec3<T>, n: impl Into<Option<Vec3<T>>>, u: [T; 3]) -> Sample<T> {
         self.sample_parts(i, n, u, Parts::ALL)

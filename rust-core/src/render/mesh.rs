@@ -15,6 +15,18 @@ use rayon::prelude::*;
 use std::fmt;
 
 /// A sea on a grid, ready to be computed at any time.
+///
+/// ```
+/// use prob_water::{Layout, Mesh, Parameters, Surface};
+///
+/// let water = Parameters { surface: Surface::Instance, components: 64, ..Parameters::default() }.configure()?;
+/// let mesh = Mesh::new(&water, &Layout { radius: 50.0, vertices: 10_000, ..Layout::default() })?;
+/// let (geometry, waves) = (mesh.level(), mesh.vertices(2.5)); // at 2.5 s
+/// // x, y, z of every vertex, and its footprint.
+/// assert_eq!(waves.positions.len(), 3 * geometry.footprints.len());
+/// assert!(geometry.footprints.len() <= 10_000);
+/// # Ok::<(), prob_water::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
     /// The sea. Its footprint is the one at the centre.
