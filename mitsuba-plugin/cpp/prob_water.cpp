@@ -318,9 +318,15 @@ private:
 
     static Spectrum spectrum(const UnpolarizedSpectrum &value) { return depolarizer<Spectrum>(value); }
 
-    /// Reflectance of the water body, and the share of draws that go to it.
-    std::pair<UnpolarizedSpectrum, Float> water_body(Request on, const Place &at, const SurfaceInteraction3f &si,
-                                                     Mask active) const {
+    /// The water body's reflectance, and the share of draws that go to it; nothing where it takes no part.
+    struct WaterBody {
+        UnpolarizedSpectrum reflectance = 0.f;
+        Float share = 0.f;
+    };
+
+    WaterBody water_body(Request on, const Place &at, const SurfaceInteraction3f &si, Mask active) const {
+        if (!on.water_leaving)
+            return {};
         UnpolarizedSpectrum reflectance = within_one(m_water_leaving->eval(si, active));
         return { reflectance, on.surface() ? at.water_leaving_share(on, si.wi, dr::mean(reflectance)) : Float(1.f) };
     }
@@ -329,19 +335,24 @@ private:
     template <bool Value, bool Pdf>
     std::pair<UnpolarizedSpectrum, Float> value_pdf(Request on, const Place &at, const SurfaceInteraction3f &si,
                                                     const Vector3f &wo, Mask active) const {
+        return value_pdf<Value, Pdf>(on, at, si.wi, wo, water_body(on, at, si, active));
+    }
+
+    template <bool Value, bool Pdf>
+    std::pair<UnpolarizedSpectrum, Float> value_pdf(Request on, const Place &at, const Vector3f &wi, const Vector3f &wo,
+                                                    const WaterBody &body) const {
         UnpolarizedSpectrum value = 0.f;
         Float pdf = 0.f;
         if (on.surface()) {
             if (Value)
-                value = at.eval(on, si.wi, wo);
+                value = at.eval(on, wi, wo);
             if (Pdf)
-                pdf = at.pdf(on, si.wi, wo);
+                pdf = at.pdf(on, wi, wo);
         }
         if (on.water_leaving) {
-            auto [reflectance, share] = water_body(on, at, si, active);
-            auto [factor, cosine_pdf] = at.water_leaving(si.wi, wo);
-            value += reflectance * factor;
-            pdf = dr::lerp(pdf, cosine_pdf, share);
+            auto [factor, cosine_pdf] = at.water_leaving(wi, wo);
+            value += body.reflectance * factor;
+            pdf = dr::lerp(pdf, cosine_pdf, body.share);
         }
         return { value, pdf };
     }
@@ -350,10 +361,10 @@ private:
                                              const Point2f &sample2, Mask active) const {
         BSDFSample3f bs = dr::zeros<BSDFSample3f>();
         Mask diffuse = false, below = false;
+        WaterBody body = water_body(on, at, si, active);
         if (on.water_leaving) {
-            Float share = water_body(on, at, si, active).second;
-            below = sample1 < share;
-            Float rest = (sample1 - share) * dr::rcp(prob_water::larger(1.f - share, 1e-9f));
+            below = sample1 < body.share;
+            Float rest = (sample1 - body.share) * dr::rcp(prob_water::larger(1.f - body.share, 1e-9f));
             sample1 = dr::select(below, 0.f, prob_water::smaller(rest, dr::OneMinusEpsilon<Float>));
         }
         UnpolarizedSpectrum value = 0.f;
@@ -367,7 +378,7 @@ private:
         if (on.water_leaving) {
             bs.wo = dr::select(below, warp::square_to_cosine_hemisphere(sample2), bs.wo);
             diffuse |= below;
-            std::tie(value, bs.pdf) = value_pdf<true, true>(on, at, si, bs.wo, active);
+            std::tie(value, bs.pdf) = value_pdf<true, true>(on, at, si.wi, bs.wo, body);
         }
         active &= bs.pdf > 0.f;
         bs.eta = 1.f;
