@@ -4,7 +4,7 @@ use super::tasks::{TASK, UNIT_TOLERANCE, check_rows, in_tasks, same_length};
 use crate::brdf::Lobe;
 use crate::error::Error;
 use crate::numeric::Vec3;
-use crate::simd::{Kernel, Lanes, SimdLevel, Vector};
+use crate::simd::{Kernel, Lanes, SimdLevel, Vector, WIDEST};
 use rayon::prelude::*;
 
 /// What is wanted of a row.
@@ -155,7 +155,7 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// Sources an observer for every row, as [`Lobe::sample`] does, on all threads of the current pool.
+    /// Draws an observer for every row, as [`Lobe::sample`] does, on all threads of the current pool.
     pub fn sample(&self, lobe: &Lobe<f32>, out: SampleColumns<'_>) -> Result<(), Error> {
         self.sample_on(SimdLevel::detect(), lobe, out)
     }
@@ -270,9 +270,6 @@ impl Task<'_> {
         }
     }
 }
-
-/// Lanes of the widest vector.
-const WIDEST: usize = 16;
 
 #[inline(always)]
 fn load<V: Vector>(x: Coordinates, first: usize) -> Vec3<Lanes<V>> {

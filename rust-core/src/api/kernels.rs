@@ -5,7 +5,8 @@ use crate::empirical::FineGrid;
 use crate::numeric::Real;
 use crate::numeric::real::Extended;
 use crate::render::ensemble_lobe::MeanLobe;
-use crate::render::{FacetTable, WaveTerm, WhitecapOnset};
+use crate::render::{FacetTable, WaveTerm};
+use crate::sea::whitecap::Onset;
 use crate::simd::recorded::{Program, Recording, Traced};
 
 /// What a program gives.
@@ -101,7 +102,7 @@ pub struct Places<'a> {
     /// The normal is a wave's.
     pub normal: bool,
     /// Whitecaps come with it.
-    pub onset: Option<WhitecapOnset<f64>>,
+    pub onset: Option<Onset<f64>>,
     /// The probability of a whitecap is an input.
     pub whitecap: bool,
     /// Facets for a footprint.
@@ -176,7 +177,7 @@ struct Sea {
     lobe: Lobe<Traced>,
     mean: TracedMean,
     normal: Option<[Traced; 3]>,
-    onset: Option<WhitecapOnset<Traced>>,
+    onset: Option<Onset<Traced>>,
     log2_footprint: Option<Traced>,
 }
 

@@ -104,12 +104,6 @@ fn corners<T: Real>(p: &[T], s: T, t: T) -> T {
     between(t, between(s, p[0], p[1]), between(s, p[2], p[3]))
 }
 
-/// The mask of lookups whose place is clamped to the table.
-#[inline(always)]
-fn everywhere<T: Real>() -> T::Mask {
-    T::lt(T::of(0.0), T::of(1.0))
-}
-
 impl<T: Tabulated> FineGrid<T> {
     /// f of some of its parts, 1/sr (Eq. 90), for unit vectors to source and observer.
     #[inline(always)]
@@ -147,14 +141,14 @@ impl<T: Tabulated> FineGrid<T> {
         let index = a.mul_add(T::of(AZIMUTHS as f64), b).mul_add(thetas, k);
         let far = index + T::of((AZIMUTHS * THETAS) as f64);
         if !self.whitecaps {
-            let near = T::lookup::<4>(&self.in_plane, index, everywhere::<T>());
-            let far = T::lookup::<4>(&self.in_plane, far, everywhere::<T>());
+            let near = T::lookup::<4>(&self.in_plane, index, T::everywhere());
+            let far = T::lookup::<4>(&self.in_plane, far, T::everywhere());
             let cell = [0, 1, 2, 3].map(|n| between(s, near[n], far[n]));
             return [corners(&cell, t, r), T::of(0.0)];
         }
         let (near, far) = (
-            T::lookup::<8>(&self.in_plane, index, everywhere::<T>()),
-            T::lookup::<8>(&self.in_plane, far, everywhere::<T>()),
+            T::lookup::<8>(&self.in_plane, index, T::everywhere()),
+            T::lookup::<8>(&self.in_plane, far, T::everywhere()),
         );
         let cell: [T; 8] = std::array::from_fn(|n| between(s, near[n], far[n]));
         [corners(&cell[..4], t, r), corners(&cell[4..], t, r)]
@@ -164,7 +158,7 @@ impl<T: Tabulated> FineGrid<T> {
     #[inline(always)]
     fn widths(&self, place: &Place<T>) -> [T; 2] {
         let ((a, s), (b, t)) = (place.incidence, place.azimuth);
-        let p = T::lookup::<8>(&self.widths, a.mul_add(T::of(AZIMUTHS as f64), b), everywhere::<T>());
+        let p = T::lookup::<8>(&self.widths, a.mul_add(T::of(AZIMUTHS as f64), b), T::everywhere());
         [corners(&p[..4], t, s), corners(&p[4..], t, s)]
     }
 

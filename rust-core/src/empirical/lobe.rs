@@ -71,7 +71,7 @@ pub struct EmpiricalLobe {
     /// Draws directions, and knows their density: the facets of all waves, and whitecaps in proportion to what they
     /// cover. Its `eval` is not this lobe's.
     pub sampler: Lobe<f64>,
-    spreads: BaselineLobe,
+    baseline: BaselineLobe,
     /// Tangents of half the angles theta_i and theta_r between which the table has nodes.
     incidences: [f64; 2],
     thetas: [f64; 2],
@@ -121,8 +121,8 @@ impl EmpiricalLobe {
     pub fn new(water: &Water, table: &Table) -> Result<Self, Error> {
         let water = &water.on(&[Surface::Empirical])?;
         let slice = table.slice(water)?;
-        let spreads = BaselineLobe::new(water);
-        let (densities, steps) = ln_densities(&Exact::new(water)?, &spreads, DENSITIES);
+        let baseline = BaselineLobe::new(water);
+        let (densities, steps) = ln_densities(&Exact::new(water)?, &baseline, DENSITIES);
         let densities: Vec<f32> = densities.into_iter().map(half).collect();
         let [incidences, thetas] = slice.ends().map(|ends| ends.map(|angle| (0.5 * angle).tan()));
         // A table for the vertical alone has a grid all the same.
@@ -135,16 +135,16 @@ impl EmpiricalLobe {
                 let of_source = twice(incidences[1] * (row / (AZIMUTHS + 1)) as f64 / INCIDENCES as f64);
                 let azimuth = turn(2.0 * (row % (AZIMUTHS + 1)) as f64 / AZIMUTHS as f64);
                 let (in_plane, widths) = slice.row(of_source, azimuth, &all);
-                let spreads = spreads.turned(azimuth.to_degrees());
+                let baseline = baseline.turned(azimuth.to_degrees());
                 let source = [-of_source.sin(), 0.0, of_source.cos()];
                 let cells = in_plane.iter().zip(&all).map(|([ratio, whitecaps, square], theta)| {
                     // At the horizon all is hidden: a little above it stands for that.
                     let o = [theta.sin(), 0.0, theta.cos().max(LOWEST)];
                     let leaning = match water.parameters.across {
-                        OffPlaneModel::Slopes => spreads.shadowing(source, o) / spreads.leaning(source, o),
+                        OffPlaneModel::Slopes => baseline.shadowing(source, o) / baseline.leaning(source, o),
                         OffPlaneModel::Report => 1.0,
                     };
-                    let ratio = ratio * spreads.share(source, o) * leaning;
+                    let ratio = ratio * baseline.share(source, o) * leaning;
                     [half(ratio.ln()), half(SHARES * whitecaps) / SHARES as f32, *square as f32]
                 });
                 (cells.collect::<Vec<_>>(), widths.map(half))
@@ -152,12 +152,13 @@ impl EmpiricalLobe {
             .collect();
         let widths: Vec<[f32; 4]> = rows.iter().map(|(_, widths)| *widths).collect();
         let in_plane: Vec<[f32; 3]> = rows.into_iter().flat_map(|(cells, _)| cells).collect();
-        let mut sampler = spreads.sampler(water);
+        let mut sampler = baseline.sampler(water);
         // As many whitecaps as a source overhead meets.
         sampler = sampler.with_whitecaps(f64::from(in_plane[THETAS / 2][1]));
         let across = water.parameters.across;
-        let grid = fine_grid(sampler, across, &spreads, incidences[1], &in_plane, &widths, &densities, steps);
-        Ok(Self { sampler, spreads, incidences, thetas, in_plane, widths, single: grid.cast(), grid })
+        let grid =
+            fine_grid(sampler, across, &baseline, incidences[1], &in_plane, &widths, &densities, steps);
+        Ok(Self { sampler, baseline, incidences, thetas, in_plane, widths, single: grid.cast(), grid })
     }
 
     /// What is evaluated; in any other number type by its `cast`.
@@ -209,7 +210,7 @@ impl EmpiricalLobe {
         let (density, visible) = self.grid.level(i, o, place);
         let seen = if self.grid.across == OffPlaneModel::Report { place.view() } else { o };
         let facets = visible * (ratio + density).exp();
-        let square = (square + self.spreads.ln_square(i, seen)).clamp(0.0, LARGEST_SQUARE).exp();
+        let square = (square + self.baseline.ln_square(i, seen)).clamp(0.0, LARGEST_SQUARE).exp();
         let moments = Moments { facets, facets2: facets * facets * square, whitecaps };
         (moments, self.grid.reflectance(i, o))
     }
@@ -234,7 +235,7 @@ impl EmpiricalLobe {
         let place = self.grid.place(i, o);
         let (Moments { facets, facets2, whitecaps }, rho) = self.moments(i, o, &place);
         let foam = self.sampler.whitecap_brdf;
-        let unseen = self.spreads.unseen(i, o).min(1.0 - whitecaps);
+        let unseen = self.baseline.unseen(i, o).min(1.0 - whitecaps);
         let open = (1.0 - whitecaps - unseen).max(1e-6);
         let lobe = (self.grid.across == OffPlaneModel::Report).then(|| {
             let [sigma, u_sigma, delta, u_delta] = place.around(&self.widths);
@@ -324,7 +325,7 @@ impl EmpiricalLobe {
 fn fine_grid(
     sampler: Lobe<f64>,
     across: OffPlaneModel,
-    spreads: &BaselineLobe,
+    baseline: &BaselineLobe,
     last: f64,
     in_plane: &[[f32; 3]],
     widths: &[[f32; 4]],
@@ -357,8 +358,8 @@ fn fine_grid(
         whitecaps,
         last,
         inv_step: INCIDENCES as f64 / last,
-        carried: spreads.carried(),
-        inv_sigma: spreads.sigmas().map(f64::recip),
+        carried: baseline.carried(),
+        inv_sigma: baseline.sigmas().map(f64::recip),
         inv_density_step: steps.map(f64::recip),
         in_plane: Packets { width: if whitecaps { 8 } else { 4 }, half: true, numbers: corners.collect() },
         widths: Packets { width: 8, half: true, numbers: around.collect() },

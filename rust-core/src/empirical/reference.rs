@@ -97,7 +97,7 @@ pub struct ReferenceModel {
     water: Water,
     waves: Waves,
     exact: Exact,
-    spreads: BaselineLobe,
+    baseline: BaselineLobe,
 }
 
 impl ReferenceModel {
@@ -107,7 +107,7 @@ impl ReferenceModel {
         water.lobe.whitecap_brdf = 0.0;
         let mut exact = Exact::new(&water)?;
         exact.obscuration = false;
-        Ok(Self { water, waves: water.waves(), exact, spreads: BaselineLobe::new(&water) })
+        Ok(Self { water, waves: water.waves(), exact, baseline: BaselineLobe::new(&water) })
     }
 
     /// The same sea under a wind from another azimuth, in degrees, counted from the plane of incidence, away from the
@@ -115,7 +115,7 @@ impl ReferenceModel {
     pub fn turned(&self, degrees: f64) -> Self {
         let water = self.water.turned(degrees);
         let exact = self.exact.turned(degrees);
-        Self { water, waves: water.waves(), exact, spreads: self.spreads.turned(degrees) }
+        Self { water, waves: water.waves(), exact, baseline: self.baseline.turned(degrees) }
     }
 
     /// The numbers for an angle of incidence, looked at from angles theta_r; radians. The source stands towards -x,
@@ -149,8 +149,8 @@ impl ReferenceModel {
         let directions: Vec<_> = thetas.iter().map(|theta| planes.in_plane(*theta)).collect();
         let approximate = |o: &[f64; 3]| {
             let level =
-                self.exact.facets_along(source.into(), (*o).into()) * self.spreads.shadowing(source, *o);
-            level * self.spreads.share(source, *o)
+                self.exact.facets_along(source.into(), (*o).into()) * self.baseline.shadowing(source, *o);
+            level * self.baseline.share(source, *o)
         };
         Ok(Node {
             in_plane: self.moments(&planes, &directions)?,
@@ -182,19 +182,19 @@ impl ReferenceModel {
         }
         // How much drawn surfaces matter: by the direction that sees least.
         let [start, end] = HIDDEN.map(f64::ln);
-        let of_source = self.spreads.lambda(source);
+        let of_source = self.baseline.lambda(source);
         let weight = |o: [f64; 3]| {
-            let t = (of_source.max(self.spreads.lambda(o)).max(1e-30).ln() - start) / (end - start);
+            let t = (of_source.max(self.baseline.lambda(o)).max(1e-30).ln() - start) / (end - start);
             let t = t.clamp(0.0, 1.0);
             t * t * (3.0 - 2.0 * t)
         };
         let weights: Vec<f64> = seen.iter().map(|o| weight(*o)).collect();
         // Of narrow facets few draws count, and of low views few are seen: both together take more of them.
         let [high, low]: [Vec<usize>; 2] = [false, true].map(|low| {
-            let matters = |k: &usize| weights[*k] > 0.0 && (self.spreads.lambda(seen[*k]) > LOW) == low;
+            let matters = |k: &usize| weights[*k] > 0.0 && (self.baseline.lambda(seen[*k]) > LOW) == low;
             (0..seen.len()).filter(matters).collect()
         });
-        for (group, more) in [(high, 1.0), (low, self.spreads.narrowness().clamp(1.0, MORE))] {
+        for (group, more) in [(high, 1.0), (low, self.baseline.narrowness().clamp(1.0, MORE))] {
             if group.is_empty() {
                 continue;
             }
@@ -230,11 +230,11 @@ impl ReferenceModel {
             .map(|chunk| {
                 let mut sums = empty();
                 for instance in chunk * CHUNK..instances.min((chunk + 1) * CHUNK) {
-                    self.point(instance, source, |point, surface, path| {
+                    self.point(instance, source, |point, surface, ray| {
                         for (sums, way) in sums.iter_mut().zip(ways) {
                             self.add(sums, point, source, *way, || {
                                 let observer = DVec3::from(*way) * OBSERVERS;
-                                !path.occludes(surface, point.position, observer)
+                                !ray.occludes(surface, point.position, observer)
                             });
                         }
                     });
@@ -266,11 +266,11 @@ impl ReferenceModel {
             return;
         }
         let position = DVec3::new(0.0, 0.0, at.height);
-        let mut path = SurfaceRay::default();
-        let lit = !path.occludes(&surface, position, DVec3::from(source) * LASER);
+        let mut ray = SurfaceRay::default();
+        let lit = !ray.occludes(&surface, position, DVec3::from(source) * LASER);
         let whitecap = self.water.whitecap_probability(at.acceleration);
         let point = SeaPoint { position, normal: at.normal(), area, lit, whitecap };
-        look(&point, &surface, &mut path);
+        look(&point, &surface, &mut ray);
     }
 
     fn add(
@@ -298,11 +298,11 @@ impl ReferenceModel {
     }
 
     /// The mean lobe across the plane.
-    fn across(&self, planes: &Planes, reach: f64) -> Result<OffPlaneModel, Error> {
+    fn across(&self, planes: &Planes, reach: f64) -> Result<MeanAcross, Error> {
         let phis: Vec<f64> = (-ACROSS..=ACROSS).map(|i| reach * f64::from(i) / f64::from(ACROSS)).collect();
         let directions: Vec<_> = phis.iter().map(|phi| planes.across(*phi)).collect();
         let values: Vec<f64> = self.moments(planes, &directions)?.iter().map(|m| m.facets).collect();
-        Ok(OffPlaneModel { fit: Gaussian::fit(&phis, &values), phis })
+        Ok(MeanAcross { fit: Gaussian::fit(&phis, &values), phis })
     }
 
     /// Fits of single surfaces' lobes across the plane, with their weights.
@@ -312,7 +312,7 @@ impl ReferenceModel {
         let rho: Vec<f64> = ways.iter().map(|way| self.reflectance(source, *way)).collect();
         let fit = |instance: u64| {
             let mut found = (0.0, None);
-            self.point(instance, source, |point, surface, path| {
+            self.point(instance, source, |point, surface, ray| {
                 if !point.lit {
                     return;
                 }
@@ -322,7 +322,7 @@ impl ReferenceModel {
                     .map(|(way, rho)| {
                         let f = self.water.lobe.facets.eval(source, *way, point.normal) / rho;
                         let observer = DVec3::from(*way) * OBSERVERS;
-                        if f > 0.0 && way[2] > 0.0 && !path.occludes(surface, point.position, observer) {
+                        if f > 0.0 && way[2] > 0.0 && !ray.occludes(surface, point.position, observer) {
                             f
                         } else {
                             0.0
@@ -344,7 +344,7 @@ impl ReferenceModel {
 }
 
 /// The mean lobe across the plane.
-struct OffPlaneModel {
+struct MeanAcross {
     phis: Vec<f64>,
     fit: Option<Gaussian>,
 }

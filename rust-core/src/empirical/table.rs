@@ -378,8 +378,8 @@ impl Table {
                 let (sin, cos) = incidence[i].sin_cos();
                 let mut in_plane = vec![[0.0; 3]; thetas];
                 let mut widths = [0.0; 4];
-                for (weight, [w, d], spreads) in &parts {
-                    let spreads = spreads.turned(g.wind_azimuth[a]);
+                for (weight, [w, d], baseline) in &parts {
+                    let baseline = baseline.turned(g.wind_azimuth[a]);
                     let node = self.node([*w, *d, i, a]);
                     for (k, sums) in in_plane.iter_mut().enumerate() {
                         let (m, near) = (&node.in_plane[k], node.approximate[k]);
@@ -388,7 +388,7 @@ impl Table {
                             if near > 0.0 { (m.facets / near).clamp(RATIOS[0], RATIOS[1]) } else { 1.0 };
                         let square = if m.facets > 0.0 { m.facets2 / (m.facets * m.facets) } else { 1.0 };
                         let gaussian =
-                            spreads.ln_square([-sin, 0.0, cos], [theta[k].sin(), 0.0, theta[k].cos()]);
+                            baseline.ln_square([-sin, 0.0, cos], [theta[k].sin(), 0.0, theta[k].cos()]);
                         sums[0] += weight * ratio.ln();
                         sums[1] += weight * m.whitecaps.max(0.0).sqrt().sqrt();
                         sums[2] += weight * (square.max(1.0).ln() - gaussian);

@@ -21,6 +21,12 @@ pub trait Tabulated: Real {
 
     /// The packet at an index; any numbers where `active` does not hold.
     fn lookup<const N: usize>(table: &Packets, index: Self, active: Self::Mask) -> [Self; N];
+
+    /// The mask of lookups whose index is within the table whatever it comes from.
+    #[inline(always)]
+    fn everywhere() -> Self::Mask {
+        Self::lt(Self::of(0.0), Self::of(1.0))
+    }
 }
 
 impl<T: Scalar> Tabulated for T {

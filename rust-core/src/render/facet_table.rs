@@ -75,9 +75,8 @@ impl<T: Tabulated> FacetTable<T> {
         let footprint = T::max(T::min(footprint, longest), shortest);
         let place = (footprint.ln() - T::of(RANGE[0])) * T::of(1.0 / step());
         let (node, t) = T::max(T::min(place, last), zero).step(NODES as u32 - 1);
-        let everywhere = T::lt(zero, last);
-        let a = T::lookup::<8>(&self.rows, node, everywhere);
-        let b = T::lookup::<8>(&self.rows, node + T::of(1.0), everywhere);
+        let a = T::lookup::<8>(&self.rows, node, T::everywhere());
+        let b = T::lookup::<8>(&self.rows, node + T::of(1.0), T::everywhere());
         let row = |k: usize| t.mul_add(b[k] - a[k], a[k]);
         facets.set_sigmas([row(0), row(1)], self.scale);
         facets.steep_gain = row(2);

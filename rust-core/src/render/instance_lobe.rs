@@ -6,7 +6,7 @@ use crate::config::Water;
 use crate::error::Error;
 use crate::numeric::real::Extended;
 use crate::numeric::{Real, Vec3};
-use crate::sea::whitecap;
+use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
 use crate::surface::{Component, Surface, Waves};
 use std::f64::consts::{PI, TAU};
@@ -66,8 +66,8 @@ impl InstanceLobe {
     }
 
     /// Where whitecaps can stand, their onset.
-    pub fn whitecap_onset(&self) -> Option<WhitecapOnset<f64>> {
-        self.has_whitecaps().then(|| WhitecapOnset::new(self.water.wind.friction_velocity))
+    pub fn whitecap_onset(&self) -> Option<Onset<f64>> {
+        self.has_whitecaps().then(|| Onset::new(self.water.wind.friction_velocity))
     }
 
     /// The sea at a place in m. With a footprint in m the waves too short for it are left to the facets.
@@ -136,34 +136,6 @@ impl<T: Real> WaveTerm<T> {
         let steep = T::of(TAU) * a * sin;
         let [kx, ky] = self.wave_number;
         [steep.mul_add(kx, x), steep.mul_add(ky, y), (a * self.frequency_squared).mul_add(cos, acceleration)]
-    }
-}
-
-/// Accelerations between which the probability of a whitecap falls (Eqs. 53-54).
-#[derive(Debug, Clone, Copy)]
-pub struct WhitecapOnset<T> {
-    /// Vertical acceleration above which there is none, m/s^2.
-    none: T,
-    /// The probability's fall per m/s^2.
-    fall: T,
-}
-
-impl WhitecapOnset<f64> {
-    fn new(friction_velocity: f64) -> Self {
-        let [sure, none] = whitecap::onset(friction_velocity).map(|cm| 0.01 * cm);
-        Self { none, fall: 1.0 / (none - sure).max(1e-30) }
-    }
-
-    /// In another number type.
-    pub fn cast<T: Real>(&self) -> WhitecapOnset<T> {
-        WhitecapOnset { none: T::coefficient(self.none), fall: T::coefficient(self.fall) }
-    }
-}
-
-impl<T: Real> WhitecapOnset<T> {
-    /// Probability of a whitecap at a vertical acceleration in m/s^2.
-    pub fn probability(&self, acceleration: T) -> T {
-        T::min(T::max((self.none - acceleration) * self.fall, T::of(0.0)), T::of(1.0))
     }
 }
 

@@ -9,5 +9,5 @@ pub mod mesh;
 pub use ensemble_lobe::EnsembleLobe;
 pub use facet_table::FacetTable;
 pub use grid::{Grid, Layout};
-pub use instance_lobe::{InstanceLobe, LocalSea, WaveTerm, WhitecapOnset};
+pub use instance_lobe::{InstanceLobe, LocalSea, WaveTerm};
 pub use mesh::Mesh;

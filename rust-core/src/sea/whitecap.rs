@@ -1,5 +1,6 @@
 //! Whitecaps: how much of the sea they cover and what they reflect. Eqs. 51 and 53-55.
 
+use crate::numeric::Real;
 use crate::numeric::root::bisect;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -32,6 +33,35 @@ pub fn probability(friction_velocity: f64, acceleration: f64) -> f64 {
     }
 }
 
+/// [`probability`] for a renderer's numbers: without a branch, of accelerations in m/s^2.
+#[derive(Debug, Clone, Copy)]
+pub struct Onset<T> {
+    /// Vertical acceleration above which there is none, m/s^2.
+    none: T,
+    /// The probability's fall per m/s^2.
+    fall: T,
+}
+
+impl Onset<f64> {
+    /// At a friction velocity in cm/s.
+    pub fn new(friction_velocity: f64) -> Self {
+        let [sure, none] = onset(friction_velocity).map(|cm| 0.01 * cm);
+        Self { none, fall: 1.0 / (none - sure).max(1e-30) }
+    }
+
+    /// In another number type.
+    pub fn cast<T: Real>(&self) -> Onset<T> {
+        Onset { none: T::coefficient(self.none), fall: T::coefficient(self.fall) }
+    }
+}
+
+impl<T: Real> Onset<T> {
+    /// Probability of a whitecap at a vertical acceleration in m/s^2.
+    pub fn probability(&self, acceleration: T) -> T {
+        T::min(T::max((self.none - acceleration) * self.fall, T::of(0.0)), T::of(1.0))
+    }
+}
+
 /// The mean of [`probability`] over vertical accelerations in cm/s^2 that are Gaussian with a mean and a standard
 /// deviation.
 pub fn mean_probability(friction_velocity: f64, mean: f64, deviation: f64) -> f64 {
@@ -61,4 +91,22 @@ pub fn deviation(friction_velocity: f64, fraction: f64) -> Option<f64> {
 /// The Lambertian BRDF of a whitecap (Eq. 55), 1/sr, at a wavelength in micrometres.
 pub fn brdf(wavelength: f64) -> f64 {
     0.22 * (-1.75 * (wavelength.max(0.6) - 0.6)).exp() / PI
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn onset_is_the_probability() {
+        for friction_velocity in [2.0, 12.0, 24.0, 25.0, 56.0, 120.0] {
+            let onset = Onset::new(friction_velocity);
+            for k in -600..=600 {
+                // Not on the step itself, below w* = 24.9.
+                let acceleration = 1.001 * f64::from(k);
+                let expected = probability(friction_velocity, acceleration);
+                assert!((onset.probability(0.01 * acceleration) - expected).abs() < 1e-12);
+            }
+        }
+    }
 }

@@ -16,6 +16,9 @@ mod vector;
 pub(crate) use real::Lanes;
 pub(crate) use vector::Vector;
 
+/// Lanes of the widest vector.
+pub(crate) const WIDEST: usize = 16;
+
 /// What vectors a processor has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SimdLevel {

@@ -136,7 +136,7 @@ impl Ensemble {
     /// Where the beam meets the water; `None` if a wave covers the laser.
     pub(super) fn hit(&self, worker: &mut Worker, engagement: &Engagement, chance: f64) -> Option<Hit> {
         let (laser, beam) = (engagement.laser().into(), engagement.direction().into());
-        let place = worker.path.first_hit(&worker.surface, laser, beam)?.truncate().to_array();
+        let place = worker.ray.first_hit(&worker.surface, laser, beam)?.truncate().to_array();
         let point = worker.surface.point(place);
         Some(self.hit_of(&point, place, chance))
     }
@@ -171,7 +171,7 @@ impl Ensemble {
             let way = (observer - from).normalize();
             seen.cos_r = way.dot(n);
             seen.obscured =
-                seen.cos_r <= 0.0 || worker.path.occludes(&worker.surface, from - origin, observer - origin);
+                seen.cos_r <= 0.0 || worker.ray.occludes(&worker.surface, from - origin, observer - origin);
             if !seen.obscured {
                 let lobe = &self.water.lobe;
                 let facets = if hit.whitecap < 1.0 {
@@ -191,5 +191,5 @@ pub(crate) struct Worker {
     /// The surface drawn last.
     pub surface: Surface,
     /// Of the ray that is followed over it.
-    pub path: SurfaceRay,
+    pub ray: SurfaceRay,
 }

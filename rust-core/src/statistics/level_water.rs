@@ -150,17 +150,17 @@ impl BaselineLobe {
 /// The density of facets along a half vector, with the 1/4 of Eq. 56, over its tilt angles upwind and crosswind, 0 in the
 /// middle: so many nodes on a side, row by row of those upwind, the logarithm of its ratio to Gauss's function of the two
 /// angles, of all slopes' variances; and the steps between nodes in standard deviations.
-pub(crate) fn ln_densities(exact: &Exact, spreads: &BaselineLobe, rows: usize) -> (Vec<f64>, [f64; 2]) {
+pub(crate) fn ln_densities(exact: &Exact, baseline: &BaselineLobe, rows: usize) -> (Vec<f64>, [f64; 2]) {
     let table = exact.facet_density();
     let middle = 0.5 * (rows - 1) as f64;
-    let sigmas = DVec2::from(spreads.sigmas());
+    let sigmas = DVec2::from(baseline.sigmas());
     let steps = sigmas.map(|sigma| facet_density::end(sigma) / sigma) / middle;
     let at = |n: usize| {
         let place = (DVec2::new((n / rows) as f64, (n % rows) as f64) - middle) * steps;
         let slope = (place * sigmas).map(f64::tan);
         let density = match &table {
             Some(table) => table.at(slope).density,
-            None => spreads.all.density_along(normal(spreads.to_world(slope).into()), None),
+            None => baseline.all.density_along(normal(baseline.to_world(slope).into()), None),
         };
         density.ln().max(NOTHING) + 0.5 * place.length_squared()
     };

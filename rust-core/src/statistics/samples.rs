@@ -134,8 +134,8 @@ impl Ensemble {
             Proposal::Plain => all(false),
             Proposal::Slopes => all(true),
             Proposal::Auto => {
-                let spreads = BaselineLobe::new(&self.water);
-                engagements.iter().map(|e| Plan(self.needs_slopes(e, &spreads))).collect()
+                let baseline = BaselineLobe::new(&self.water);
+                engagements.iter().map(|e| Plan(self.needs_slopes(e, &baseline))).collect()
             }
         })
     }

@@ -89,11 +89,11 @@ impl Gaussian {
 impl Ensemble {
     /// Whether plain draws leave the mean of f towards each observer to too few seas: facets are narrow beside the drawn
     /// slopes, and f varies by them more than by whitecaps.
-    pub(crate) fn needs_slopes(&self, engagement: &Engagement, spreads: &BaselineLobe) -> Vec<bool> {
+    pub(crate) fn needs_slopes(&self, engagement: &Engagement, baseline: &BaselineLobe) -> Vec<bool> {
         let water = &self.water;
         // Mean square over squared mean of the facets' f at the peak.
-        let square = spreads.ln_square([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]).exp();
-        let all = spreads.sampler(water);
+        let square = baseline.ln_square([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]).exp();
+        let all = baseline.sampler(water);
         let foam = if water.parameters.whitecaps { water.whitecap_fraction } else { 0.0 };
         let facets_matter = |[i, o]: [[f64; 3]; 2]| {
             square * all.facets.eval(i, o, None).powi(2) > foam * all.whitecap_brdf.powi(2)
@@ -211,7 +211,7 @@ impl Ensemble {
         let area = -beam.z + DVec2::from(point.slope).dot(beam.truncate());
         let from = DVec3::new(0.0, 0.0, point.height);
         let back = (laser.z - point.height) / -beam.z;
-        if area <= 0.0 || worker.path.occludes(&worker.surface, from, from - back * beam) {
+        if area <= 0.0 || worker.ray.occludes(&worker.surface, from, from - back * beam) {
             return 0.0;
         }
         let place = laser + back * beam;

@@ -5,7 +5,7 @@
 
 use super::realised::{Point, Surface};
 use crate::numeric::Real;
-use crate::simd::{Kernel, Lanes, SimdLevel, Vector};
+use crate::simd::{Kernel, Lanes, SimdLevel, Vector, WIDEST};
 use std::f64::consts::TAU;
 
 /// The waves of a surface at its time, by property, filled up to whole vectors with waves of amplitude 0.
@@ -23,8 +23,6 @@ pub struct WaveSums {
     acceleration: Vec<f32>,
 }
 
-/// Numbers in the widest vector.
-const WIDEST: usize = 16;
 /// Waves of a lane that are summed in float32 before float64 takes their sum.
 const BLOCK: usize = 32;
 
