@@ -81,58 +81,41 @@ public:
     std::pair<BSDFSample3f, Spectrum> sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, Float sample1,
                                              const Point2f &sample2, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
-
         active &= Frame3f::cos_theta(si.wi) > 0.f;
-        Request on = request(ctx);
-        if (unlikely(on.none() || dr::none_or<false>(active)))
-            return { dr::zeros<BSDFSample3f>(), 0.f };
-        return sample(on, place(si, active), si, sample1, sample2, active);
+        auto at = local(ctx, si, active);
+        return at ? draw(*at, sample1, sample2, active) : std::pair(dr::zeros<BSDFSample3f>(), Spectrum(0.f));
     }
 
-    Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
-                  Mask active) const override {
+    Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
-
-        Request on = request(ctx);
-        if (unlikely(on.none() || dr::none_or<false>(active)))
-            return 0.f;
-        return spectrum(value_pdf<true, false>(on, place(si, active), si, wo, active).first) & active;
+        auto at = local(ctx, si, active);
+        return at ? spectrum(value(*at, wo)) & active : 0.f;
     }
 
-    Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
-              Mask active) const override {
+    Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
-
-        Request on = request(ctx);
-        if (unlikely(on.none() || dr::none_or<false>(active)))
-            return 0.f;
-        return dr::select(active, value_pdf<false, true>(on, place(si, active), si, wo, active).second, 0.f);
+        auto at = local(ctx, si, active);
+        return at ? dr::select(active, density(*at, wo), 0.f) : 0.f;
     }
 
     std::pair<Spectrum, Float> eval_pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo,
                                         Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
-
-        Request on = request(ctx);
-        if (unlikely(on.none() || dr::none_or<false>(active)))
+        auto at = local(ctx, si, active);
+        if (!at)
             return { 0.f, 0.f };
-        auto [value, pdf] = value_pdf<true, true>(on, place(si, active), si, wo, active);
-        return { spectrum(value) & active, dr::select(active, pdf, 0.f) };
+        return { spectrum(value(*at, wo)) & active, dr::select(active, density(*at, wo), 0.f) };
     }
 
     std::tuple<Spectrum, Float, BSDFSample3f, Spectrum>
     eval_pdf_sample(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Float sample1,
                     const Point2f &sample2, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFSample, active);
-
-        Request on = request(ctx);
-        if (unlikely(on.none() || dr::none_or<false>(active)))
+        auto at = local(ctx, si, active);
+        if (!at)
             return { 0.f, 0.f, dr::zeros<BSDFSample3f>(), 0.f };
-        Place at = place(si, active);
-        auto [value, pdf] = value_pdf<true, true>(on, at, si, wo, active);
-        Mask lit = active && Frame3f::cos_theta(si.wi) > 0.f;
-        auto [bs, weight] = sample(on, at, si, sample1, sample2, lit);
-        return { spectrum(value) & active, dr::select(active, pdf, 0.f), bs, weight };
+        auto [bs, weight] = draw(*at, sample1, sample2, active && Frame3f::cos_theta(si.wi) > 0.f);
+        return { spectrum(value(*at, wo)) & active, dr::select(active, density(*at, wo), 0.f), bs, weight };
     }
 
     Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
@@ -318,74 +301,73 @@ private:
 
     static Spectrum spectrum(const UnpolarizedSpectrum &value) { return depolarizer<Spectrum>(value); }
 
-    /// The water body's reflectance, and the share of draws that go to it; nothing where it takes no part.
-    struct WaterBody {
+    /// The water as an interaction sees it.
+    struct Local {
+        Request on;
+        Place place;
+        Vector3f wi;
+        /// Of the water body.
         UnpolarizedSpectrum reflectance = 0.f;
+        /// Share of draws that go to it.
         Float share = 0.f;
     };
 
-    WaterBody water_body(Request on, const Place &at, const SurfaceInteraction3f &si, Mask active) const {
-        if (!on.water_leaving)
-            return {};
-        UnpolarizedSpectrum reflectance = within_one(m_water_leaving->eval(si, active));
-        return { reflectance, on.surface() ? at.water_leaving_share(on, si.wi, dr::mean(reflectance)) : Float(1.f) };
+    /// Nothing where nothing is asked for.
+    std::optional<Local> local(const BSDFContext &ctx, const SurfaceInteraction3f &si, Mask active) const {
+        Request on = request(ctx);
+        if (unlikely(on.none() || dr::none_or<false>(active)))
+            return std::nullopt;
+        Local at{ on, place(si, active), si.wi };
+        if (on.water_leaving) {
+            at.reflectance = within_one(m_water_leaving->eval(si, active));
+            at.share = on.surface() ? at.place.water_leaving_share(on, si.wi, dr::mean(at.reflectance)) : Float(1.f);
+        }
+        return at;
     }
 
-    /// f cos(theta_o) and density, as far as wanted.
-    template <bool Value, bool Pdf>
-    std::pair<UnpolarizedSpectrum, Float> value_pdf(Request on, const Place &at, const SurfaceInteraction3f &si,
-                                                    const Vector3f &wo, Mask active) const {
-        return value_pdf<Value, Pdf>(on, at, si.wi, wo, water_body(on, at, si, active));
-    }
-
-    template <bool Value, bool Pdf>
-    std::pair<UnpolarizedSpectrum, Float> value_pdf(Request on, const Place &at, const Vector3f &wi, const Vector3f &wo,
-                                                    const WaterBody &body) const {
+    /// f cos(theta_o), 1/sr.
+    UnpolarizedSpectrum value(const Local &at, const Vector3f &wo) const {
         UnpolarizedSpectrum value = 0.f;
-        Float pdf = 0.f;
-        if (on.surface()) {
-            if (Value)
-                value = at.eval(on, wi, wo);
-            if (Pdf)
-                pdf = at.pdf(on, wi, wo);
-        }
-        if (on.water_leaving) {
-            auto [factor, cosine_pdf] = at.water_leaving(wi, wo);
-            value += body.reflectance * factor;
-            pdf = dr::lerp(pdf, cosine_pdf, body.share);
-        }
-        return { value, pdf };
+        if (at.on.surface())
+            value = at.place.eval(at.on, at.wi, wo);
+        if (at.on.water_leaving)
+            value += at.reflectance * at.place.water_leaving(at.wi, wo).first;
+        return value;
     }
 
-    std::pair<BSDFSample3f, Spectrum> sample(Request on, const Place &at, const SurfaceInteraction3f &si, Float sample1,
-                                             const Point2f &sample2, Mask active) const {
+    /// Density of draws, 1/sr.
+    Float density(const Local &at, const Vector3f &wo) const {
+        Float density = at.on.surface() ? at.place.pdf(at.on, at.wi, wo) : Float(0.f);
+        return at.on.water_leaving ? dr::lerp(density, at.place.water_leaving(at.wi, wo).second, at.share) : density;
+    }
+
+    std::pair<BSDFSample3f, Spectrum> draw(const Local &at, Float sample1, const Point2f &sample2, Mask active) const {
         BSDFSample3f bs = dr::zeros<BSDFSample3f>();
+        UnpolarizedSpectrum f_cos = 0.f;
         Mask diffuse = false, below = false;
-        WaterBody body = water_body(on, at, si, active);
-        if (on.water_leaving) {
-            below = sample1 < body.share;
-            Float rest = (sample1 - body.share) * dr::rcp(prob_water::larger(1.f - body.share, 1e-9f));
+        if (at.on.water_leaving) {
+            below = sample1 < at.share;
+            Float rest = (sample1 - at.share) * dr::rcp(prob_water::larger(1.f - at.share, 1e-9f));
             sample1 = dr::select(below, 0.f, prob_water::smaller(rest, dr::OneMinusEpsilon<Float>));
         }
-        UnpolarizedSpectrum value = 0.f;
-        if (on.surface() && !dr::all_or<false>(below)) {
-            auto drawn = at.sample(on, si.wi, { sample1, sample2.x(), sample2.y() });
+        if (at.on.surface() && !dr::all_or<false>(below)) {
+            auto drawn = at.place.sample(at.on, at.wi, { sample1, sample2.x(), sample2.y() });
             bs.wo = drawn.wo;
             bs.pdf = drawn.pdf;
-            value = drawn.value;
+            f_cos = drawn.value;
             diffuse = drawn.whitecap;
         }
-        if (on.water_leaving) {
+        if (at.on.water_leaving) {
             bs.wo = dr::select(below, warp::square_to_cosine_hemisphere(sample2), bs.wo);
+            bs.pdf = density(at, bs.wo);
+            f_cos = value(at, bs.wo);
             diffuse |= below;
-            std::tie(value, bs.pdf) = value_pdf<true, true>(on, at, si.wi, bs.wo, body);
         }
         active &= bs.pdf > 0.f;
         bs.eta = 1.f;
         bs.sampled_component = dr::select(diffuse, UInt32(1), UInt32(0));
-        bs.sampled_type = dr::select(diffuse, UInt32(+BSDFFlags::DiffuseReflection),
-                                     UInt32(+BSDFFlags::GlossyReflection));
-        return { bs, spectrum(value / bs.pdf) & active };
+        bs.sampled_type = dr::select(diffuse, UInt32(+BSDFFlags::DiffuseReflection), UInt32(+BSDFFlags::GlossyReflection));
+        return { bs, spectrum(f_cos / bs.pdf) & active };
     }
 
     rust::Box<prob_water::Options> m_options;
