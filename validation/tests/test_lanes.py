@@ -15,6 +15,7 @@ SWITCHES = [
     {"shadowing": False, "gram_charlier": False},
     {"readings": "as_printed"},
     {"whitecaps": True, "ior": 1.1, "wind_direction": -140.0},
+    {"wavelength": 12.5, "fresnel": "exact"},  # Water absorbs there.
 ]
 
 

@@ -91,6 +91,9 @@ def test_commands_of_the_readme():
     for words in lines:
         if words[:2] == ["cargo", "xtask"]:
             assert f"\n  {words[2]} " in known, words
+        elif "--example" in words:
+            # `cargo xtask examples` runs it.
+            assert (ROOT / f"rust-core/examples/{words[-1]}.rs").is_file(), words
         else:
             assert words[:6] == ["cargo", "run", "--release", "-p", "prob-water-cli", "--"], words
             assert run([COMMAND, *words[6:]]).startswith("time,observer,mean")
@@ -125,7 +128,7 @@ def test_rust(tmp_path):
 
 def test_c(tmp_path):
     """The guide's program prints the numbers it promises; its fragments compile and run within it."""
-    rust = built("rustc", "-p", "prob-water", "--release", "--features", "c-api", "--crate-type", "staticlib",
+    rust = built("rustc", "-p", "prob-water", "--release", "--features", "c-api", "--crate-type", "staticlib,cdylib",
                  "--target-dir", "target")
     library = next(f for f in rust if f.endswith(".a"))
     program, *fragments = blocks("docs/guide-c.md", "c")

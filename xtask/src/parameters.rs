@@ -138,7 +138,7 @@ fn table(style: &str, rows: &[Row]) -> Result<String> {
 }
 
 /// A plugin's documentation with the list of the vocabulary filled anew. Its line `.. exposed:` names what `traverse` exposes,
-/// a line `.. without:` what it does not take.
+/// a line `.. without:` what it does not take, a line `.. default:` defaults of its own.
 fn plugin(text: &str, rows: &[Row]) -> Result<String> {
     const BEGIN: &str = ".. parameters\n";
     const END: &str = ".. parameters end\n";
@@ -149,8 +149,13 @@ fn plugin(text: &str, rows: &[Row]) -> Result<String> {
     };
     let exposed = names(".. exposed:").with_context(|| missing(".. exposed:"))?;
     let without = names(".. without:").unwrap_or_default();
-    if let Some(name) = exposed.iter().chain(&without).find(|name| rows.iter().all(|row| row.name != **name))
-    {
+    let defaults: Vec<(&str, &str)> = names(".. default:")
+        .unwrap_or_default()
+        .iter()
+        .map(|own| own.split_once(" = ").with_context(|| format!("{own} is no `name = value`")))
+        .collect::<Result<_>>()?;
+    let named = exposed.iter().chain(&without).chain(defaults.iter().map(|(name, _)| name));
+    if let Some(name) = named.into_iter().find(|name| rows.iter().all(|row| row.name != **name)) {
         bail!("{name} is no parameter");
     }
     let (before, rest) = text.split_once(BEGIN).with_context(|| missing(BEGIN.trim_end()))?;
@@ -164,10 +169,8 @@ fn plugin(text: &str, rows: &[Row]) -> Result<String> {
             "word" => "|string|",
             _ => "|bool|",
         };
-        let mut default = row.default.clone();
-        if default.is_empty() {
-            default = "not given".into();
-        }
+        let own = defaults.iter().find(|(name, _)| row.name == *name).map(|(_, value)| *value);
+        let default = own.unwrap_or(if row.default.is_empty() { "not given" } else { &row.default });
         let unit = if row.unit.is_empty() { String::new() } else { format!("Unit: {}. ", row.unit) };
         list += &format!("\n * - {}\n   - {kind}\n   - {}.\n", row.name, sentence(&row.meaning));
         list += &format!("     {unit}Allowed: {}. (Default: {default})\n", row.allowed);

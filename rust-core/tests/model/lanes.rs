@@ -70,6 +70,8 @@ fn seas() -> Vec<Parameters> {
                 Parameters { slope_measure: SlopeMeasure::Slope, fresnel: Fresnel::Exact, ..oblique },
                 Parameters { readings: Readings::AsPrinted, shadowing: false, ior: Some(1.1), ..plain },
                 Parameters { gram_charlier: false, ior: Some(4.0), ..oblique },
+                // Water absorbs there.
+                Parameters { wavelength: 12.5, fresnel: Fresnel::Exact, ..oblique },
             ]);
         }
     }
