@@ -263,14 +263,14 @@ private:
             // Side of a square as large as the pixel on the water.
             Vector3f x = dr::fmadd(si.dp_du, si.duv_dx.x(), si.dp_dv * si.duv_dx.y()),
                      y = dr::fmadd(si.dp_du, si.duv_dy.x(), si.dp_dv * si.duv_dy.y());
-            d = dr::sqrt(dr::norm(dr::cross(x, y)));
+            d = m_traits.diameter * dr::sqrt(dr::norm(dr::cross(x, y)));
             Float by_angle = m_traits.footprint;
             if (m_traits.pixel_angle > 0.f)
-                by_angle = m_traits.pixel_angle * si.t * dr::rsqrt(prob_water::larger(si.wi.z(), 1e-4f));
+                by_angle = m_traits.diameter * m_traits.pixel_angle * si.t * dr::rsqrt(prob_water::larger(si.wi.z(), 1e-4f));
             d = dr::select(d > 0.f, d, by_angle);
         } else {
             // What is no length is as small as can be.
-            d = prob_water::larger(m_footprint->eval_1(si, active), 1e-30f);
+            d = prob_water::larger(m_traits.diameter * m_footprint->eval_1(si, active), 1e-30f);
         }
         // Shorter waves than the sea's are not drawn.
         return m_traits.drawn ? prob_water::larger(d, m_traits.footprint) : d;

@@ -40,6 +40,8 @@ mod ffi {
         pixel: bool,
         /// Angle of a pixel, radians; 0 where ray differentials tell its size.
         pixel_angle: f32,
+        /// D for a width of 1 of a pixel or of a texture.
+        diameter: f32,
         /// m.
         footprint: f32,
     }

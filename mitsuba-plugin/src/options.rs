@@ -3,7 +3,7 @@
 use crate::ffi::Number;
 use crate::water::{Varied, Water};
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
-use prob_water::{Error, Table};
+use prob_water::{Error, FootprintMeasure, Table};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -133,6 +133,12 @@ impl Options {
         }
         let mut water = Water::new(&self.sea, self.varied, self.table.clone(), self.whitecap_texture)?;
         water.pixel_angle = angle.to_radians();
+        if is_pixel {
+            water.measure = FootprintMeasure::Side;
+        } else if self.lent {
+            // A shape's vertices have D.
+            water.measure = FootprintMeasure::OneOverE2;
+        }
         water.exposed = if self.lent { &EXPOSED_WHEN_LENT } else { &EXPOSED };
         if traced && is_pixel && angle == 0.0 {
             return Err(

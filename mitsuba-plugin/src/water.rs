@@ -6,7 +6,8 @@ use prob_water::kernels::{Mean, Places};
 use prob_water::simd::recorded::Instruction;
 use prob_water::vocabulary::{Builder, Value};
 use prob_water::{
-    EmpiricalLobe, EnsembleLobe, Error, FacetTable, InstanceLobe, Kernels, Lobe, Surface, Table,
+    EmpiricalLobe, EnsembleLobe, Error, FacetTable, FootprintMeasure, InstanceLobe, Kernels, Lobe, Surface,
+    Table,
 };
 use std::sync::Arc;
 
@@ -37,6 +38,8 @@ pub struct Water {
     whitecap_texture: bool,
     /// Radians.
     pub pixel_angle: f64,
+    /// What is measured where the footprint varies.
+    pub measure: FootprintMeasure,
     /// Names of the numbers that can be changed, where they are set and matter.
     pub exposed: &'static [&'static str],
 }
@@ -114,6 +117,7 @@ impl Water {
             varied,
             whitecap_texture,
             pixel_angle: 0.0,
+            measure: water.parameters.footprint_measure,
             exposed: &[],
         })
     }
@@ -131,6 +135,7 @@ impl Water {
             whitecap_texture: self.whitecap_texture,
             pixel: self.varied == Varied::Pixel,
             pixel_angle: self.pixel_angle as f32,
+            diameter: self.measure.diameter() as f32,
             footprint: self.water.footprint as f32,
         }
     }
@@ -202,7 +207,8 @@ impl Water {
         let mut text = self.water.to_string();
         if self.facets.is_some() {
             // A word that is refused unless one says for which footprint.
-            let own = format!("\nfootprint = {}\n", self.water.footprint);
+            let own = self.water.parameters.get("footprint").map_or(String::new(), |own| own.to_string());
+            let own = format!("\nfootprint = {own}\n");
             text = text.replacen(&own, "\nfootprint = \"varies\"\n", 1);
         }
         if let Waves::Empirical(_) = self.waves {

@@ -190,7 +190,7 @@ def test_pixel_footprint(use, variant, integrator, pixel):
 
     for samples in (1, 64):
         share = side if pixel else side / samples**0.5
-        found, wanted = image({"footprint": "pixel", **pixel}, samples), image({"footprint": share}, samples)
+        found, wanted = image({"footprint": "pixel", **pixel}, samples), image({"footprint": share, "footprint_measure": "side"}, samples)
         other = image({}, samples)
         print(f"\n{samples} samples: {found} {wanted} {other}")
         assert abs(found / wanted - 1) < 1e-2 < 5e-2 < abs(other / wanted - 1)

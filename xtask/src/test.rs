@@ -72,8 +72,13 @@ pub fn test() -> Result<()> {
     }
 }
 
+/// Meanwhile the Python packages that later steps need are fetched.
 fn cargo_test() -> Result<Outcome> {
-    util::run(util::cargo().args(["test", "--workspace", "--all-features"]), "cargo test")?;
+    std::thread::scope(|scope| {
+        let setup = scope.spawn(setup::setup);
+        util::run(util::cargo().args(["test", "--workspace", "--all-features"]), "cargo test")?;
+        setup.join().expect("does not panic")
+    })?;
     Ok(Passed)
 }
 

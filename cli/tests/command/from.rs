@@ -3,7 +3,8 @@
 use crate::{refuse, succeed};
 use exr::prelude::*;
 use prob_water::{
-    Average, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeMeasure, Surface, Wind,
+    Average, FootprintMeasure, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeMeasure, Surface,
+    Wind,
 };
 use std::fs;
 use std::path::Path;
@@ -49,6 +50,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         wind,
         wind_direction: -100.0 / 3.0,
         footprint: Some(0.21),
+        footprint_measure: FootprintMeasure::OneOverE,
         surface,
         average: Average::Report,
         across: OffPlaneModel::Slopes,
@@ -62,6 +64,8 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         ior: Some(4.0 / 3.0),
         extinction: Some(1.0 / 7.0),
         water: Salinity::Fresh,
+        temperature: Some(20.0 / 3.0),
+        salinity: Some(0.1),
         fresnel: Fresnel::Exact,
         slope_measure: SlopeMeasure::Slope,
         readings: Readings::AsPrinted,

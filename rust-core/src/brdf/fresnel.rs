@@ -18,8 +18,31 @@ const HALE_QUERRY: &str = include_str!("../../data/water_nk_hale_querry_1973.csv
 /// First and last wavelength of the table, micrometres.
 pub const WAVELENGTHS: [f64; 2] = [0.2, 200.0];
 
-/// What sea salt adds to the index: Friedman (1969) as 6S uses it, chlorinity 19 g/kg.
-pub const SEA_SALT: f64 = 0.000_174_927_11 * (0.03 + 1.805 * 19.0);
+/// What salt adds to the index for every per mille of it: Friedman (1969), as 6S uses it.
+const SALT_PER_MILLE: f64 = 0.000_174_927_11;
+
+/// Wavelengths in micrometres at which salt's part of the index was measured: Friedman from 1.5 on, Quan and Fry in the visible,
+/// where both agree to 7 % (`salt_agrees_with_quan_and_fry`); between the two it is taken as the same.
+const SALT_MEASURED: [f64; 2] = [0.4, 14.0];
+
+/// What a salinity in per mille adds to the index of pure water at a wavelength in micrometres; nothing where it was not
+/// measured.
+pub fn salt(wavelength: f64, salinity: f64) -> f64 {
+    if (SALT_MEASURED[0]..=SALT_MEASURED[1]).contains(&wavelength) { SALT_PER_MILLE * salinity } else { 0.0 }
+}
+
+/// Wavelengths in micrometres for which [`quan_fry`] holds.
+pub const QUAN_FRY: [f64; 2] = [0.4, 0.7];
+
+/// Refractive index of sea water at a wavelength in micrometres, a temperature in degrees Celsius (0 to 30) and a salinity in
+/// per mille (0 to 35): Quan and Fry, Appl. Opt. 34, 3477 (1995), Eq. 3.
+pub fn quan_fry(wavelength: f64, temperature: f64, salinity: f64) -> f64 {
+    let (l, t, s) = (1000.0 * wavelength, temperature, salinity);
+    1.314_05 + (1.779e-4 - 1.05e-6 * t + 1.6e-8 * t * t) * s - 2.02e-6 * t * t
+        + (15.868 + 0.011_55 * s - 0.004_23 * t) / l
+        - 4382.0 / (l * l)
+        + 1.1455e6 / (l * l * l)
+}
 
 /// Refractive index n and extinction coefficient k of pure water at a wavelength in micrometres, linear between the entries of
 /// Hale and Querry; held at the ends of the table.
@@ -160,6 +183,7 @@ impl<T: Real> Reflectance<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sea::Salinity;
 
     #[test]
     fn index_is_the_table_at_its_entries_and_linear_between() {
@@ -168,7 +192,37 @@ mod tests {
         assert!((pure_water(0.55)[0] - 1.333).abs() < 1e-15);
         let [n, k] = pure_water(0.2125);
         assert!((n - 0.5 * (1.396 + 1.373)).abs() < 1e-12 && (k - 0.5 * (1.1e-7 + 4.9e-8)).abs() < 1e-18);
-        assert!((SEA_SALT - 0.006_004).abs() < 1e-6);
+    }
+
+    /// Salt by Friedman is what it was, and is left out where nobody measured it.
+    #[test]
+    fn salt_counts_where_it_was_measured() {
+        let sea = Salinity::Ocean.per_mille();
+        for (wavelength, expected) in
+            [(0.3, 0.0), (0.4, 0.006_004), (3.0, 0.006_004), (14.0, 0.006_004), (15.0, 0.0)]
+        {
+            assert!((salt(wavelength, sea) - expected).abs() < 1e-6);
+        }
+        assert_eq!(salt(0.55, Salinity::Fresh.per_mille()), 0.0);
+    }
+
+    /// Published values of sea and pure water, the table of Hale and Querry (which is 0.004 lower in the violet), and the two laws
+    /// of salt.
+    #[test]
+    fn salt_agrees_with_quan_and_fry() {
+        assert!((quan_fry(0.55, 20.0, 35.0) - 1.340_79).abs() < 5e-6, "{}", quan_fry(0.55, 20.0, 35.0));
+        // The D line of sodium.
+        assert!((quan_fry(0.5893, 20.0, 0.0) - 1.332_99).abs() < 5e-5);
+        for k in 0..=30 {
+            let wavelength = 0.4 + 0.01 * f64::from(k);
+            let [table, _] = pure_water(wavelength);
+            assert!((quan_fry(wavelength, 25.0, 0.0) - table).abs() < 4e-3, "{wavelength}");
+            let added = quan_fry(wavelength, 20.0, 35.0) - quan_fry(wavelength, 20.0, 0.0);
+            assert!((added / salt(wavelength, 35.0) - 1.0).abs() < 0.07, "{wavelength}: {added}");
+        }
+        // Warmer water and longer waves refract less.
+        assert!(quan_fry(0.5, 25.0, 35.0) < quan_fry(0.5, 5.0, 35.0));
+        assert!(quan_fry(0.7, 20.0, 35.0) < quan_fry(0.4, 20.0, 35.0));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::brdf::lobe::steep_gain;
 use crate::brdf::slopes::GramCharlier;
 use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing, slopes};
 use crate::error::Error;
-use crate::sea::{Salinity, WindProfile, whitecap};
+use crate::sea::{WindProfile, whitecap};
 
 impl Parameters {
     /// Checks everything and computes what depends on the parameters alone.
@@ -17,7 +17,7 @@ impl Parameters {
         let wind = self.wind.profile()?;
         let footprint = self.footprint();
         check("wind_direction", self.wind_direction, self.wind_direction)?;
-        check("footprint", footprint, footprint)?;
+        check("footprint", self.width(), self.width())?;
         check("components", f64::from(self.components), self.components)?;
         check("instances", self.instances as f64, self.instances)?;
         check("seed", self.seed as f64, self.seed)?;
@@ -31,7 +31,13 @@ impl Parameters {
         if let Some(extinction) = self.extinction {
             check("extinction", extinction, extinction)?;
         }
-        let [ior, extinction] = self.index();
+        if let Some(temperature) = self.temperature {
+            check("temperature", temperature, temperature)?;
+        }
+        if let Some(salinity) = self.salinity {
+            check("salinity", salinity, salinity)?;
+        }
+        let [ior, extinction] = self.index()?;
         let variances = slopes::variances(&wind, footprint);
         let whitecap_fraction = whitecap::fraction(wind.w10);
         Ok(Water {
@@ -53,13 +59,24 @@ impl Parameters {
     }
 
     /// The complex refractive index, n and k.
-    fn index(&self) -> [f64; 2] {
+    fn index(&self) -> Result<[f64; 2], Error> {
         let [pure, absorption] = fresnel::pure_water(self.wavelength);
-        let salt = if self.water == Salinity::Ocean { fresnel::SEA_SALT } else { 0.0 };
-        let ior = self.ior.unwrap_or(pure + salt);
+        let salinity = self.salinity.unwrap_or(self.water.per_mille());
+        let ior = match (self.ior, self.temperature) {
+            (Some(ior), _) => ior,
+            (None, None) => pure + fresnel::salt(self.wavelength, salinity),
+            (None, Some(_)) if !(fresnel::QUAN_FRY[0]..=fresnel::QUAN_FRY[1]).contains(&self.wavelength) => {
+                return Err(Error::OutOfRange {
+                    parameter: "wavelength",
+                    value: self.wavelength.to_string(),
+                    allowed: "0.4 to 0.7 micrometres with a temperature (Quan and Fry)".into(),
+                });
+            }
+            (None, Some(temperature)) => fresnel::quan_fry(self.wavelength, temperature, salinity),
+        };
         let transparent = self.ior.is_some() || self.readings == Readings::AsPrinted;
         let extinction = self.extinction.unwrap_or(if transparent { 0.0 } else { absorption });
-        [ior, fresnel::relevant_extinction(ior, extinction)]
+        Ok([ior, fresnel::relevant_extinction(ior, extinction)])
     }
 
     /// The facets of a wind, an index and slope variances.

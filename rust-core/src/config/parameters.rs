@@ -3,6 +3,7 @@
 use crate::brdf::{Fresnel, Lobe, SlopeMeasure, WindAxes};
 use crate::error::{Error, Warning};
 use crate::sea::{Salinity, Wind, WindProfile, whitecap};
+use std::f64::consts::{LN_2, SQRT_2};
 
 /// How the report's defective equations are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -36,6 +37,33 @@ impl Surface {
     /// The footprint D in m unless one is given: infinite on a flat surface, which has no waves, else 0.15 m.
     pub fn default_footprint(self) -> f64 {
         if DRAWN.contains(&self) { 0.15 } else { f64::INFINITY }
+    }
+}
+
+/// What is measured as the footprint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FootprintMeasure {
+    /// The report's D: the diameter at which a Gaussian beam's intensity is 1/e^2 of its middle's.
+    #[default]
+    OneOverE2,
+    /// The diameter at 1/e, as laser safety has it.
+    OneOverE,
+    /// The full width at half the maximum.
+    HalfMaximum,
+    /// The side of a square that is looked at evenly, as a pixel's: D has the same variance.
+    Side,
+}
+
+impl FootprintMeasure {
+    /// D for a width of 1: a Gaussian `exp(-8 r^2/D^2)` has its half at `D sqrt(ln 2/8)`, the variance `D^2/16` along each axis; a
+    /// square of side a has `a^2/12`.
+    pub fn diameter(self) -> f64 {
+        match self {
+            Self::OneOverE2 => 1.0,
+            Self::OneOverE => SQRT_2,
+            Self::HalfMaximum => (2.0 / LN_2).sqrt(),
+            Self::Side => 2.0 / 3f64.sqrt(),
+        }
     }
 }
 
@@ -81,9 +109,11 @@ pub struct Parameters {
     pub wind: Wind,
     /// Azimuth the wind comes from, degrees counter-clockwise from +x.
     pub wind_direction: f64,
-    /// The report's D, m: waves shorter than 2 D are facets. Infinite: all waves are. `None`: the surface's
-    /// [default](Surface::default_footprint).
+    /// Width of what is lit or looked at, m, which gives the report's D: waves shorter than 2 D are facets. Infinite: all waves are.
+    /// `None`: the surface's [default](Surface::default_footprint).
     pub footprint: Option<f64>,
+    /// Which width that is.
+    pub footprint_measure: FootprintMeasure,
     /// Where the facets lie.
     pub surface: Surface,
     /// What the mean over all drawn waves is of; has no effect on other surfaces.
@@ -104,13 +134,17 @@ pub struct Parameters {
     pub fetch: f64,
     /// Micrometres.
     pub wavelength: f64,
-    /// Refractive index; else that of `water` at `wavelength`.
+    /// Refractive index; else that of water of a `salinity` at `wavelength` and `temperature`.
     pub ior: Option<f64>,
     /// Extinction coefficient k, the imaginary part of the index; else that of water at `wavelength`, or 0 with an `ior` or
     /// [`Readings::AsPrinted`].
     pub extinction: Option<f64>,
     /// Salt or fresh.
     pub water: Salinity,
+    /// Degrees Celsius: the index is then Quan and Fry's, in the visible; else Hale and Querry's, at 25 degrees.
+    pub temperature: Option<f64>,
+    /// Salt in per mille, for the index; else that of `water`.
+    pub salinity: Option<f64>,
     /// Reflectance of a facet.
     pub fresnel: Fresnel,
     /// Measure of the slope density.
@@ -131,6 +165,7 @@ impl Default for Parameters {
             wind: Wind::Speed { speed: 5.0, height: 10.0 },
             wind_direction: 0.0,
             footprint: None,
+            footprint_measure: FootprintMeasure::OneOverE2,
             surface: Surface::Flat,
             average: Average::Power,
             across: OffPlaneModel::Report,
@@ -144,6 +179,8 @@ impl Default for Parameters {
             ior: None,
             extinction: None,
             water: Salinity::Ocean,
+            temperature: None,
+            salinity: None,
             fresnel: Fresnel::Schlick,
             slope_measure: SlopeMeasure::Angle,
             readings: Readings::Corrected,
@@ -245,8 +282,36 @@ impl Water {
 }
 
 impl Parameters {
-    /// The report's D in m: as given, or the surface's [default](Surface::default_footprint).
-    pub fn footprint(&self) -> f64 {
+    /// The footprint in m by its measure: as given, or the surface's [default](Surface::default_footprint).
+    pub(crate) fn width(&self) -> f64 {
         self.footprint.unwrap_or_else(|| self.surface.default_footprint())
+    }
+
+    /// The report's D in m.
+    pub fn footprint(&self) -> f64 {
+        self.width() * self.footprint_measure.diameter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A beam `exp(-8 r^2/D^2)` has the intensity that the measure names where the width of 1 ends, or a square's variance.
+    #[test]
+    fn diameters_are_of_one_beam() {
+        let at_edge = |measure: FootprintMeasure| (-8.0 * 0.25 / measure.diameter().powi(2)).exp();
+        assert!((at_edge(FootprintMeasure::OneOverE2) - (-2f64).exp()).abs() < 1e-15);
+        assert!((at_edge(FootprintMeasure::OneOverE) - (-1f64).exp()).abs() < 1e-15);
+        assert!((at_edge(FootprintMeasure::HalfMaximum) - 0.5).abs() < 1e-15);
+        assert!((FootprintMeasure::Side.diameter().powi(2) / 16.0 - 1.0 / 12.0).abs() < 1e-15);
+        let wide = Parameters {
+            footprint: Some(0.2),
+            footprint_measure: FootprintMeasure::OneOverE,
+            ..Parameters::default()
+        };
+        let same = Parameters { footprint: Some(0.2 * SQRT_2), ..Parameters::default() };
+        assert_eq!(wide.configure().unwrap().variances, same.configure().unwrap().variances);
+        assert_eq!(wide.configure().unwrap().footprint, same.footprint());
     }
 }

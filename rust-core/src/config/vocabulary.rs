@@ -1,8 +1,8 @@
 //! The one vocabulary of parameters: scene files, flags, C, Python and Rust all use these names.
 
 use super::parameters::{
-    Average, DRAWN, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters, Readings,
-    SEEDS, Surface, Water,
+    Average, DRAWN, FootprintMeasure, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel,
+    Parameters, Readings, SEEDS, Surface, Water,
 };
 use crate::brdf::fresnel::WAVELENGTHS;
 use crate::brdf::{Fresnel, SlopeMeasure};
@@ -79,6 +79,13 @@ macro_rules! field {
             set: |b, name, value| whole_in_range(name, value).map(|n| b.parameters.$field = n),
         }
     };
+    (optional, $field:ident, $holds:expr) => {
+        Access {
+            holds: $holds,
+            get: |p| p.$field.map(Value::Number),
+            set: |b, name, value| in_range(name, value).map(|x| b.parameters.$field = Some(x)),
+        }
+    };
     (flag, $field:ident) => {
         Access {
             holds: |_| true,
@@ -109,7 +116,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 25] = [
+pub const ENTRIES: [Entry; 28] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -175,9 +182,19 @@ pub const ENTRIES: [Entry; 25] = [
         kind: Kind::Number,
         access: Access {
             holds: |d| d > 0.0,
-            get: |p| Some(Value::Number(p.footprint())),
+            get: |p| Some(Value::Number(p.width())),
             set: |b, name, value| in_range(name, value).map(|d| b.parameters.footprint = Some(d)),
         },
+    },
+    Entry {
+        name: "footprint_measure",
+        unit: "",
+        default: "1/e2",
+        allowed: "1/e2, 1/e, fwhm, side",
+        help: "what the footprint is of a beam: its diameter at `1/e2` of the intensity in its middle (the report's D), at `1/e`, at half of it (`fwhm`), or the `side` of a pixel",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, footprint_measure, FOOTPRINTS),
     },
     Entry {
         name: "surface",
@@ -288,38 +305,50 @@ pub const ENTRIES: [Entry; 25] = [
         unit: "",
         default: "",
         allowed: "1 to 4",
-        help: "refractive index; else Hale and Querry's at the wavelength",
+        help: "refractive index; else Hale and Querry's at the wavelength, and what the salt adds",
         surfaces: ALL,
         kind: Kind::Number,
-        access: Access {
-            holds: |n| (1.0..=4.0).contains(&n),
-            get: |p| p.ior.map(Value::Number),
-            set: |b, name, value| in_range(name, value).map(|n| b.parameters.ior = Some(n)),
-        },
+        access: field!(optional, ior, |n| (1.0..=4.0).contains(&n)),
     },
     Entry {
         name: "extinction",
         unit: "",
         default: "",
         allowed: "0 to 10",
-        help: "imaginary part k of the index; else Hale and Querry's at the wavelength, or 0 with an `ior`",
+        help: "imaginary part k of the index; else Hale and Querry's at the wavelength, or 0 with an `ior` or `readings` as printed",
         surfaces: ALL,
         kind: Kind::Number,
-        access: Access {
-            holds: |k| (0.0..=10.0).contains(&k),
-            get: |p| p.extinction.map(Value::Number),
-            set: |b, name, value| in_range(name, value).map(|k| b.parameters.extinction = Some(k)),
-        },
+        access: field!(optional, extinction, |k| (0.0..=10.0).contains(&k)),
     },
     Entry {
         name: "water",
         unit: "",
         default: "ocean",
         allowed: "ocean, fresh",
-        help: "sea or fresh water: salt raises the index by 0.006",
+        help: "sea or fresh water: salt raises the index by 0.006, from 0.4 to 14 micrometres",
         surfaces: ALL,
         kind: Kind::Word,
         access: field!(word, water, WATERS),
+    },
+    Entry {
+        name: "temperature",
+        unit: "degrees Celsius",
+        default: "",
+        allowed: "0 to 30 degrees Celsius",
+        help: "of the water, in the visible: the index is then Quan and Fry's",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: field!(optional, temperature, |t| (0.0..=30.0).contains(&t)),
+    },
+    Entry {
+        name: "salinity",
+        unit: "per mille",
+        default: "",
+        allowed: "0 to 45 per mille",
+        help: "salt, for the index; else 34.3 in the ocean and none in fresh water",
+        surfaces: ALL,
+        kind: Kind::Number,
+        access: field!(optional, salinity, |s| (0.0..=45.0).contains(&s)),
     },
     Entry {
         name: "fresnel",
@@ -393,12 +422,14 @@ pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Re
 pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
 
 /// The parameters that do not describe the sea, but how its surface reflects.
-pub const OPTICS: [&str; 10] = [
+pub const OPTICS: [&str; 12] = [
     "average",
     "across",
     "wavelength",
     "ior",
     "extinction",
+    "temperature",
+    "salinity",
     "fresnel",
     "slope_measure",
     "readings",
@@ -478,6 +509,12 @@ const SURFACES: [(&str, Surface); 4] = [
 ];
 const ACROSS: [(&str, OffPlaneModel); 2] =
     [("report", OffPlaneModel::Report), ("slopes", OffPlaneModel::Slopes)];
+const FOOTPRINTS: [(&str, FootprintMeasure); 4] = [
+    ("1/e2", FootprintMeasure::OneOverE2),
+    ("1/e", FootprintMeasure::OneOverE),
+    ("fwhm", FootprintMeasure::HalfMaximum),
+    ("side", FootprintMeasure::Side),
+];
 const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Average::Report)];
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
@@ -637,6 +674,7 @@ mod tests {
             ("beaufort", Value::Number(4.0)),
             ("wind_direction", Value::Number(-30.0)),
             ("footprint", Value::Number(0.15)),
+            ("footprint_measure", Value::Text("fwhm".into())),
             ("surface", Value::Text("instance".into())),
             ("average", Value::Text("report".into())),
             ("across", Value::Text("slopes".into())),
@@ -650,6 +688,8 @@ mod tests {
             ("ior", Value::Number(1.33)),
             ("extinction", Value::Number(0.25)),
             ("water", Value::Text("fresh".into())),
+            ("temperature", Value::Number(12.5)),
+            ("salinity", Value::Number(7.0)),
             ("fresnel", Value::Text("exact".into())),
             ("slope_measure", Value::Text("slope".into())),
             ("readings", Value::Text("as_printed".into())),
@@ -696,6 +736,7 @@ mod tests {
                 wind,
                 wind_direction: -1.0 / 3.0,
                 footprint: Some(1e-7),
+                footprint_measure: FootprintMeasure::Side,
                 surface: Surface::Instance,
                 average: Average::Report,
                 across: OffPlaneModel::Slopes,
@@ -709,6 +750,8 @@ mod tests {
                 ior: Some(4.0 / 3.0),
                 extinction: Some(1.0 / 7.0),
                 water: Salinity::Fresh,
+                temperature: Some(20.0 / 3.0),
+                salinity: Some(0.1),
                 fresnel: Fresnel::Exact,
                 slope_measure: SlopeMeasure::Slope,
                 readings: Readings::AsPrinted,
@@ -729,7 +772,8 @@ mod tests {
         assert_eq!(named.len(), ENTRIES.len());
         let text = Parameters::default().configure().unwrap().to_string();
         assert!(
-            text.contains("\nfootprint = inf\nsurface = \"flat\"\n") && !text.contains("\nior"),
+            text.contains("\nfootprint = inf\nfootprint_measure = \"1/e2\"\nsurface = \"flat\"\n")
+                && !text.contains("\nior"),
             "{text}"
         );
         assert!(
@@ -839,6 +883,7 @@ mod tests {
             ("surface", text("lumpy")),
             ("average", text("median")),
             ("across", text("diagonal")),
+            ("footprint_measure", text("1/e3")),
             ("components", number(0.0)),
             ("components", number(1e5)),
             ("components", number(2.5)),
@@ -858,6 +903,8 @@ mod tests {
             ("extinction", number(-1e-9)),
             ("extinction", number(10.1)),
             ("ior", number(f64::INFINITY)),
+            ("temperature", number(-0.5)),
+            ("salinity", number(45.5)),
             ("whitecaps", number(1.0)),
             ("fresnel", Value::Flag(true)),
         ] {

@@ -286,7 +286,8 @@ pub(crate) const SHARED: [&str; 9] = [
 
 /// What else it was made with: how many points were drawn and which, and of which water the reflectance was that its
 /// numbers do not have.
-pub(crate) const MADE_WITH: [&str; 6] = ["instances", "seed", "wavelength", "ior", "extinction", "fresnel"];
+pub(crate) const MADE_WITH: [&str; 8] =
+    ["instances", "seed", "wavelength", "ior", "extinction", "temperature", "salinity", "fresnel"];
 
 /// The parameters that a table tells, by name; the others have no part in it.
 pub(crate) fn kept(value: impl Fn(&str) -> Option<Value>) -> Result<Parameters, Error> {
