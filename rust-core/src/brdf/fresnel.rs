@@ -22,7 +22,7 @@ pub const WAVELENGTHS: [f64; 2] = [0.2, 200.0];
 const SALT_PER_MILLE: f64 = 0.000_174_927_11;
 
 /// Wavelengths in micrometres at which salt's part of the index was measured: Friedman from 1.5 on, Quan and Fry in the visible,
-/// where both agree to 7 % (`salt_agrees_with_quan_and_fry`); between the two it is taken as the same.
+/// where both agree to 10 % (`salt_agrees_with_quan_and_fry`); between the two it is taken as the same.
 const SALT_MEASURED: [f64; 2] = [0.4, 14.0];
 
 /// What a salinity in per mille adds to the index of pure water at a wavelength in micrometres; nothing where it was not
@@ -218,7 +218,7 @@ mod tests {
             let [table, _] = pure_water(wavelength);
             assert!((quan_fry(wavelength, 25.0, 0.0) - table).abs() < 4e-3, "{wavelength}");
             let added = quan_fry(wavelength, 20.0, 35.0) - quan_fry(wavelength, 20.0, 0.0);
-            assert!((added / salt(wavelength, 35.0) - 1.0).abs() < 0.07, "{wavelength}: {added}");
+            assert!((added / salt(wavelength, 35.0) - 1.0).abs() < 0.1, "{wavelength}: {added}");
         }
         // Warmer water and longer waves refract less.
         assert!(quan_fry(0.5, 25.0, 35.0) < quan_fry(0.5, 5.0, 35.0));
