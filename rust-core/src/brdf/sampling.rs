@@ -1,17 +1,18 @@
-//! Importance sampling: facet normals in proportion to the area they show the source, whitecaps by cosine.
+//! Importance sampling of the visible normals (Heitz and d'Eon 2014): facet normals in proportion to the area they show the
+//! source; whitecaps by cosine. Their inversion needs the inverse error function, or a density of slopes that a stretch makes
+//! isotropic; this mixture needs elementary functions alone and serves densities of tilt angles too.
 //!
-//! Facets are drawn in the frame of the wave normal as tilts: slopes, or, where the density is one of
-//! tilt angles, the angle from the normal with its azimuth (an azimuthal equidistant map, which turns
-//! the two flat axes of the density's angles into one and decays slower than it). A tilt `z`, in
-//! standard deviations, shows the source the area `c (1 + rD)`, with `c = cos theta_i`, `r` the part of
-//! `z` along the source and `D` the spread of tilts along it over `c`. It is drawn from
+//! Facets are drawn in the frame of the wave normal as tilts: slopes, or, where the density is one of tilt angles, the angle from
+//! the normal with its azimuth (an azimuthal equidistant map, which turns the two flat axes of the density's angles into one and
+//! decays slower than it). A tilt `z` in standard deviations shows the source the area `A = cos theta_i (1 + k r)+`, with `r` the
+//! part of `z` along the source's azimuth, and `k` the standard deviation of tilts along it times `tan theta_i`. With `v = 1/k`
+//! and the normal density `phi` the tilt is drawn from
 //!
-//! `phi(z)/(1 + D phi(v)) [2 A(z)/(A(z) + A(-z)) + (rD - 1)+ exp(v (r - v))]` with `v = 1/D`:
+//! `phi(z)/(1 + k phi(v)) [2 A(z)/(A(z) + A(-z)) + (k r - 1)+ exp(v (r - v))]`:
 //!
-//! either a Gaussian tilt, kept or turned around in proportion to the areas `A` that the two show
-//! (exact while both face the source), or one tilted towards it by `r - v`, Rayleigh. Nothing but
-//! elementary functions is needed, and against the ideal, area-weighted Gaussian of slopes its weight
-//! is at most 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
+//! either a Gaussian tilt, kept or turned around in proportion to the areas that the two show (exact while both face the source),
+//! or one tilted towards it whose `r - v` is Rayleigh. Against the ideal, area-weighted Gaussian of slopes its weight is at most
+//! 1.22 (`v` near 1/2: `(1 + phi(v)/v)/(1 + Lambda)`).
 
 use super::lobe::{Facets, GRAZING, Geometry, Lobe, Parts};
 use super::slopes::WIDTH;
@@ -45,16 +46,16 @@ pub struct Sample<T> {
 
 /// What the source fixes of the facets' proposal.
 struct Proposal<T> {
-    /// 1/c.
+    /// 1/cos theta_i.
     inv_cos: T,
-    /// Components of `z` that make `rD`.
+    /// The vector whose product with `z` is `k r`.
     towards: [T; 2],
-    /// v = 1/D.
+    /// v = 1/k.
     v: T,
-    /// How often phi(v) halves phi(0).
+    /// log2 of phi(0)/phi(v).
     halvings: T,
-    /// D phi(v).
-    tail: T,
+    /// k phi(v): the tail's weight in the mixture, beside 1 for the Gaussian.
+    tail_weight: T,
 }
 
 impl<T: Real> Facets<T> {
@@ -77,14 +78,15 @@ impl<T: Real> Facets<T> {
     fn proposal(&self, i: Vec3<T>) -> Proposal<T> {
         let inv_cos = T::max(i[2], T::of(GRAZING)).recip();
         let towards = [i[0] * self.proposal[0] * inv_cos, i[1] * self.proposal[1] * inv_cos];
-        let d2 = T::max(towards[0].mul_add(towards[0], towards[1] * towards[1]), T::TINY);
-        let v = d2.rsqrt();
+        let k2 = T::max(towards[0].mul_add(towards[0], towards[1] * towards[1]), T::TINY);
+        let v = k2.rsqrt();
         let halvings = T::of(HALF_LOG2_E) * (v * v);
-        let tail = d2 * v * halvings.exp2_neg() * T::of(INV_SQRT_TAU);
-        Proposal { inv_cos, towards, v, halvings, tail }
+        let tail_weight = k2 * v * halvings.exp2_neg() * T::of(INV_SQRT_TAU);
+        Proposal { inv_cos, towards, v, halvings, tail_weight }
     }
 
-    /// Density, 1/sr, of the observer's direction among draws.
+    /// Density, 1/sr, of the observer's direction among draws: the tilt's density times `d tilt^2/d omega_h`, over the mirror's
+    /// `4 i.h = 4 cos theta_i cos xi (1 + slope along i/cos theta_i)`.
     #[inline(always)]
     fn pdf<E>(&self, g: &Geometry<T, E>) -> T {
         let (zero, one, two) = (T::of(0.0), T::of(1.0), T::of(2.0));
@@ -101,13 +103,14 @@ impl<T: Real> Facets<T> {
         let z = [g.slope[0] / self.proposal[0], g.slope[1] / self.proposal[1]];
         let z2 = tilt_over_slope * tilt_over_slope * z[0].mul_add(z[0], z[1] * z[1]);
         let slanted = g.slope[0].mul_add(g.local_i[0], g.slope[1] * g.local_i[1]) * p.inv_cos;
-        // The area shown over its value for a level facet, and how far r is beyond v.
+        // 1 + k r for slopes: the area shown over a level facet's; and k r - 1 for tilts.
         let shown = T::max(one + slanted, T::SMALL);
         let beyond = slanted.mul_add(tilt_over_slope, -one);
+        // 2 A(z)/(A(z) + A(-z)) is min(1 + k r, 2); 2 pi of phi and the mirror's 4 are in `norm`.
         let halvings = T::of(HALF_LOG2_E) * z2;
         let gauss = halvings.exp2_neg() * T::min(shown, two);
         let tail = T::max((-two * p.halvings).mul_add(beyond, halvings), zero).exp2_neg() * beyond;
-        let norm = T::of(8.0 * PI) * self.proposal[0] * self.proposal[1] * (one + p.tail) * shown;
+        let norm = T::of(8.0 * PI) * self.proposal[0] * self.proposal[1] * (one + p.tail_weight) * shown;
         T::min((gauss + T::select(zero.lt(beyond), tail, zero)) * jacobian * p.inv_cos / norm, T::MAX)
     }
 
@@ -283,9 +286,9 @@ impl<T: Real> Lobe<T> {
             choice = T::min(choice, one);
         }
         let p = self.facets.proposal(local);
-        let scaled = choice * (one + p.tail);
-        let in_tail = T::lt(scaled, p.tail);
-        let rest = T::select(in_tail, scaled / T::max(p.tail, T::TINY), scaled - p.tail);
+        let scaled = choice * (one + p.tail_weight);
+        let in_tail = T::lt(scaled, p.tail_weight);
+        let rest = T::select(in_tail, scaled / T::max(p.tail_weight, T::TINY), scaled - p.tail_weight);
         // Tails take their azimuth from the first number, all others from the last.
         let from_rest = if parts.whitecaps { in_tail & !whitecap } else { in_tail };
         let (sin, cos) = T::select(from_rest, rest, u[2]).sin_cos_turns();

@@ -576,6 +576,27 @@ mod tests {
         assert_eq!(Plan::new(&none, &good).unwrap_err().parameters(), ["instances"]);
     }
 
+    /// A table's sea is compared by every parameter, but for those of its axes, what does not change its numbers and what may
+    /// differ knowingly. A new parameter needs a decision.
+    #[test]
+    fn every_parameter_is_compared_or_known_to_differ() {
+        const AXES: [&str; 7] = [
+            "wind_speed",
+            "wind_height",
+            "friction_velocity",
+            "beaufort",
+            "wind_direction",
+            "footprint",
+            "footprint_measure",
+        ];
+        const WITHOUT_EFFECT: [&str; 4] = ["surface", "average", "across", "time"];
+        for entry in crate::config::vocabulary::ENTRIES {
+            let lists = [&SHARED[..], &MADE_WITH, &AXES, &WITHOUT_EFFECT];
+            let count = lists.iter().filter(|list| list.contains(&entry.name)).count();
+            assert_eq!(count, 1, "{}", entry.name);
+        }
+    }
+
     #[test]
     fn rounding_keeps_twelve_bits() {
         for x in [1.0f64, 0.1, 3.3e-5, 1234.567, 1e-30] {
