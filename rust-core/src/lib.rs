@@ -51,7 +51,7 @@ pub mod surface;
 
 pub use api::batch;
 pub use api::kernels::{self, Kernels};
-pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, fresnel, sampling, shadowing, slopes};
+pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, SlopeStatistics, fresnel, sampling, shadowing, slopes};
 pub use config::{Average, OffPlaneModel, Parameters, Readings, Surface, Water, vocabulary};
 pub use empirical::{EmpiricalLobe, Estimate, FineGrid, Gridded, Table, planes, table, table_file};
 pub use error::{Error, Warning};

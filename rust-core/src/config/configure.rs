@@ -4,7 +4,7 @@ use super::parameters::{Parameters, Readings, Water};
 use super::vocabulary::check;
 use crate::brdf::lobe::steep_gain;
 use crate::brdf::slopes::GramCharlier;
-use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing, slopes};
+use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing};
 use crate::error::Error;
 use crate::sea::{Salinity, WindProfile, whitecap};
 
@@ -32,7 +32,7 @@ impl Parameters {
             check("extinction", extinction, extinction)?;
         }
         let [ior, extinction] = self.index();
-        let variances = slopes::variances(&wind, footprint);
+        let variances = self.slopes.variances(&wind, footprint);
         let whitecap_fraction = whitecap::fraction(wind.w10);
         Ok(Water {
             parameters: *self,
@@ -81,7 +81,7 @@ impl Parameters {
             proposal: [sigma_u, sigma_c],
             bounded: false,
             wind: WindAxes::new(self.wind_direction),
-            correction: GramCharlier::new(slopes::skewness(wind), as_printed),
+            correction: GramCharlier::new(self.slopes.skewness(wind), self.slopes.kurtosis(), as_printed),
             sigma_shadow: shadowing::sigma(wind.w10),
             reflectance: Reflectance::new(index, self.fresnel),
             slope_measure,

@@ -1,6 +1,6 @@
 //! What a user may choose, and the sea configured from it.
 
-use crate::brdf::{Fresnel, Lobe, SlopeMeasure, WindAxes};
+use crate::brdf::{Fresnel, Lobe, SlopeMeasure, SlopeStatistics, WindAxes};
 use crate::error::{Error, Warning};
 use crate::sea::{Salinity, Wind, WindProfile, whitecap};
 
@@ -102,6 +102,8 @@ pub struct Parameters {
     pub depth: f64,
     /// Distance to the shore the wind comes from, m: matters to 100 km.
     pub fetch: f64,
+    /// Measured statistics of the slopes of all waves.
+    pub slopes: SlopeStatistics,
     /// Micrometres.
     pub wavelength: f64,
     /// Refractive index; else that of `water` at `wavelength`.
@@ -140,6 +142,7 @@ impl Default for Parameters {
             time: 0.0,
             depth: f64::INFINITY,
             fetch: f64::INFINITY,
+            slopes: SlopeStatistics::CoxMunk,
             wavelength: 0.55,
             ior: None,
             extinction: None,

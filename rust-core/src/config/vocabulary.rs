@@ -5,7 +5,7 @@ use super::parameters::{
     SEEDS, Surface, Water,
 };
 use crate::brdf::fresnel::WAVELENGTHS;
-use crate::brdf::{Fresnel, SlopeMeasure};
+use crate::brdf::{Fresnel, SlopeMeasure, SlopeStatistics};
 use crate::error::{Error, refuse};
 use crate::sea::{Salinity, Wind, wind};
 
@@ -109,7 +109,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 25] = [
+pub const ENTRIES: [Entry; 26] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -272,6 +272,17 @@ pub const ENTRIES: [Entry; 25] = [
         surfaces: &DRAWN,
         kind: Kind::Number,
         access: field!(number, fetch, |d| d > 0.0),
+    },
+    Entry {
+        name: "slopes",
+        unit: "",
+        default: "cox_munk",
+        allowed: "cox_munk, breon_henriot",
+        help: "measured slopes of all waves: Cox and Munk's (Eqs. 76-78, `cox_munk`) or Breon and Henriot's \
+               (`breon_henriot`)",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, slopes, STATISTICS),
     },
     Entry {
         name: "wavelength",
@@ -482,6 +493,8 @@ const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Av
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
+const STATISTICS: [(&str, SlopeStatistics); 2] =
+    [("cox_munk", SlopeStatistics::CoxMunk), ("breon_henriot", SlopeStatistics::BreonHenriot)];
 const READINGS: [(&str, Readings); 2] =
     [("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)];
 
@@ -646,6 +659,7 @@ mod tests {
             ("time", Value::Number(-3.5)),
             ("depth", Value::Number(2.0)),
             ("fetch", Value::Number(5e3)),
+            ("slopes", Value::Text("breon_henriot".into())),
             ("wavelength", Value::Number(1.064)),
             ("ior", Value::Number(1.33)),
             ("extinction", Value::Number(0.25)),
@@ -705,6 +719,7 @@ mod tests {
                 time: -0.0,
                 depth: 1e23,
                 fetch: 5e15,
+                slopes: SlopeStatistics::BreonHenriot,
                 wavelength: 1.064,
                 ior: Some(4.0 / 3.0),
                 extinction: Some(1.0 / 7.0),

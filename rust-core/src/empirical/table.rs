@@ -272,7 +272,8 @@ pub(crate) struct Slice {
 }
 
 /// Parameters that a table has only one value of.
-pub(crate) const SHARED: [&str; 9] = [
+pub(crate) const SHARED: [&str; 10] = [
+    "slopes",
     "components",
     "depth",
     "fetch",
@@ -283,6 +284,9 @@ pub(crate) const SHARED: [&str; 9] = [
     "shadowing",
     "gram_charlier",
 ];
+
+/// Those of them that were added later: a file that does not tell them was made with their defaults.
+pub(crate) const ADDED: [&str; 1] = ["slopes"];
 
 /// What else it was made with: how many points were drawn and which, and of which water the reflectance was that its
 /// numbers do not have.

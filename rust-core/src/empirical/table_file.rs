@@ -12,7 +12,7 @@
 //! The metadata have the format's name and version, the version of this crate, the parameters by the vocabulary's names
 //! and the units of all arrays. Every array has a check sum.
 
-use super::table::{Grid, MADE_WITH, SHARED, Table, kept};
+use super::table::{ADDED, Grid, MADE_WITH, SHARED, Table, kept};
 use crate::config::vocabulary::Value;
 use crate::error::Error;
 use npyz::WriterBuilder;
@@ -152,7 +152,8 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
         return Err(format!("its format_version is {}, expected {FORMAT_VERSION}", told("format_version")));
     }
     let parameters = told("parameters");
-    if let Some(missing) = SHARED.iter().find(|name| parameters.get(name).is_none()) {
+    if let Some(missing) = SHARED.iter().find(|name| !ADDED.contains(name) && parameters.get(name).is_none())
+    {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {

@@ -6,7 +6,7 @@ use prob_water::mesh::Vertices;
 use prob_water::spectrum::spreading;
 use prob_water::surface::Waves;
 use prob_water::surface::share;
-use prob_water::{Draws, Ensemble, Layout, Mesh, RealisedSurface, Surface, Water, slopes};
+use prob_water::{Draws, Ensemble, Layout, Mesh, RealisedSurface, Surface, Water};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -220,9 +220,9 @@ fn variance_is_complete_at_every_distance() {
         let mesh = Mesh::new(&water, &small(2e4, 50_000)).unwrap();
         for (r, found) in distances.iter().zip(shown(w, &distances, 16)) {
             let at = (CELLS * mesh.grid.growth * r).max(0.15);
-            let facets = slopes::variances(&water.wind, at);
+            let facets = water.parameters.slopes.variances(&water.wind, at);
             let [_, u, c] = integrals(&water.fading_waves(), at);
-            let more = slopes::variances(&water.wind, mesh.facets(at));
+            let more = water.parameters.slopes.variances(&water.wind, mesh.facets(at));
             let expected = [u + facets[0], c + facets[1]];
             let lost = [1.0 - (found[0] + more[0]) / expected[0], 1.0 - (found[1] + more[1]) / expected[1]];
             let worst = worse(lost[0].abs(), lost[1].abs());
