@@ -13,6 +13,7 @@
 //! and the units of all arrays. Every array has a check sum.
 
 use super::table::{ADDED, Grid, MADE_WITH, SHARED, Table, kept};
+use crate::config::Parameters;
 use crate::config::vocabulary::Value;
 use crate::error::Error;
 use npyz::WriterBuilder;
@@ -79,8 +80,11 @@ impl Table {
 
     /// What the file says of itself.
     pub fn metadata(&self) -> String {
+        let usual = Parameters::default();
+        let told = |name: &&&str| !ADDED.contains(*name) || self.parameters.get(name) != usual.get(name);
         let parameters: Map<_, _> = SHARED
             .iter()
+            .filter(told)
             .chain(&MADE_WITH)
             .filter_map(|name| {
                 let value = match self.parameters.get(name)? {
@@ -227,7 +231,7 @@ fn array<T: npyz::Deserialize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Parameters, Surface};
+    use crate::config::Surface;
     use crate::empirical::table::Plan;
 
     fn small() -> Table {

@@ -34,7 +34,7 @@ impl FacetTable<f64> {
             let f = water.parameters.facets(
                 &water.wind,
                 [water.ior, water.extinction],
-                water.parameters.slopes.variances(&water.wind, footprint),
+                water.facet_variances(footprint),
             );
             // Where no bound is in force nothing reaches the slack.
             let bound = if f.bounded { f.bound } else { BOUND_SLACK };
