@@ -25,8 +25,9 @@ impl Parameters {
         check("time", self.time, self.time)?;
         check("depth", self.depth, self.depth)?;
         check("fetch", self.fetch, self.fetch)?;
-        if self.spectrum == SpectrumModel::Jonswap && self.fetch.is_infinite() {
-            return refuse("fetch", self.fetch, "above 0 m, finite, with spectrum = jonswap");
+        let needs_fetch = matches!(self.spectrum, SpectrumModel::Jonswap | SpectrumModel::Tma);
+        if needs_fetch && self.fetch.is_infinite() {
+            return refuse("fetch", self.fetch, "above 0 m, finite, with spectrum = jonswap or tma");
         }
         check("wavelength", self.wavelength, self.wavelength)?;
         if let Some(ior) = self.ior {

@@ -278,9 +278,9 @@ pub const ENTRIES: [Entry; 28] = [
         name: "spectrum",
         unit: "",
         default: "report",
-        allowed: "report, jonswap, elfouhaily",
-        help: "wave energy spectrum: the `report`'s (Eqs. 3-20), `jonswap`'s of a short `fetch`, or Elfouhaily's \
-               (`elfouhaily`)",
+        allowed: "report, jonswap, tma, elfouhaily",
+        help: "wave energy spectrum: the `report`'s (Eqs. 3-20), `jonswap`'s of a short `fetch`, the same where `depth` limits \
+               the waves (`tma`), or Elfouhaily's (`elfouhaily`)",
         surfaces: &DRAWN,
         kind: Kind::Word,
         access: field!(word, spectrum, SPECTRA),
@@ -516,9 +516,10 @@ const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Av
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
-const SPECTRA: [(&str, SpectrumModel); 3] = [
+const SPECTRA: [(&str, SpectrumModel); 4] = [
     ("report", SpectrumModel::Report),
     ("jonswap", SpectrumModel::Jonswap),
+    ("tma", SpectrumModel::Tma),
     ("elfouhaily", SpectrumModel::Elfouhaily),
 ];
 const BUDGETS: [(&str, SlopeBudget); 2] = [("report", SlopeBudget::Report), ("closed", SlopeBudget::Closed)];
@@ -1008,6 +1009,22 @@ mod tests {
         let refused = water.on(&[Surface::Flat, Surface::Ensemble]).unwrap_err().to_string();
         assert_eq!(refused, "surface = instance is not served here: allowed is flat, ensemble");
         assert!(water.on(&[Surface::Instance]).is_ok());
+    }
+
+    #[test]
+    fn short_seas_need_a_fetch() {
+        for word in ["jonswap", "tma"] {
+            let mut builder = Builder::default();
+            builder.set("spectrum", &Value::Text(word.into())).unwrap();
+            let refused = builder.parameters().unwrap().configure().unwrap_err();
+            assert_eq!(refused.parameters(), ["fetch"]);
+            assert_eq!(
+                refused.to_string(),
+                "fetch = inf is out of range: allowed is above 0 m, finite, with spectrum = jonswap or tma"
+            );
+            builder.set("fetch", &Value::Number(5e3)).unwrap();
+            builder.parameters().unwrap().configure().unwrap();
+        }
     }
 
     #[test]

@@ -23,6 +23,8 @@ pub enum SpectrumModel {
     Report,
     /// JONSWAP's: a sea with a short fetch.
     Jonswap,
+    /// TMA's: JONSWAP's in water whose depth limits the waves.
+    Tma,
     /// Elfouhaily et al.'s unified spectrum.
     Elfouhaily,
 }
@@ -59,8 +61,9 @@ impl Spectrum {
                 let s = open(fetch);
                 (Form::Report(s), s.k0, s.k1, s.k2, s.k_min())
             }
-            SpectrumModel::Jonswap => {
-                let s = Jonswap::new(wind, fetch, open(f64::INFINITY));
+            SpectrumModel::Jonswap | SpectrumModel::Tma => {
+                let limits = if model == SpectrumModel::Tma { depth } else { f64::INFINITY };
+                let s = Jonswap::new(wind, fetch, limits, open(f64::INFINITY));
                 (Form::Jonswap(s), s.peak, s.k1(), s.open.k2, s.k_min())
             }
             SpectrumModel::Elfouhaily => {
@@ -235,6 +238,7 @@ mod tests {
             of(SpectrumModel::Report, 5e3),
             of(SpectrumModel::Jonswap, 800.0),
             of(SpectrumModel::Jonswap, 1e5),
+            Spectrum::new(SpectrumModel::Tma, &wind, Salinity::Ocean, 0.5, 2e4),
             of(SpectrumModel::Elfouhaily, f64::INFINITY),
             of(SpectrumModel::Elfouhaily, 1e4),
         ]

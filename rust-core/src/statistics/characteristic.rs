@@ -79,7 +79,8 @@ impl Component {
 
     /// Fills in variances and bounds.
     fn sum(&mut self) {
-        let of: [(usize, fn(&[f64; 3]) -> f64); 3] =
+        type Factor = fn(&[f64; 3]) -> f64;
+        let of: [(usize, Factor); 3] =
             [(1, |[c, _, f]| (c * f).abs()), (1, |[_, s, f]| (s * f).abs()), (2, |[_, _, f]| *f)];
         for (m, (amplitude, factor)) in of.into_iter().enumerate() {
             for row in 0..self.relative.len() {
@@ -272,10 +273,16 @@ mod tests {
             [(2.0, 0.05), (8.0, 0.15), (24.0, 0.15), (56.0, 0.15), (120.0, 0.02), (238.0, 0.05)]
         {
             let places = [(f64::INFINITY, f64::INFINITY), (300.0, 4.0), (800.0, 0.2), (5e3, 1e3), (5e4, 1e3)];
-            let models = [SpectrumModel::Report, SpectrumModel::Jonswap, SpectrumModel::Elfouhaily];
+            let models = [
+                SpectrumModel::Report,
+                SpectrumModel::Jonswap,
+                SpectrumModel::Tma,
+                SpectrumModel::Elfouhaily,
+            ];
             for (spectrum, (fetch, depth)) in models.into_iter().flat_map(|m| places.map(|place| (m, place)))
             {
-                if spectrum == SpectrumModel::Jonswap && fetch.is_infinite() {
+                let short = matches!(spectrum, SpectrumModel::Jonswap | SpectrumModel::Tma);
+                if short && fetch.is_infinite() {
                     continue;
                 }
                 let waves = crate::config::Parameters {
