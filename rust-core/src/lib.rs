@@ -51,14 +51,14 @@ pub mod surface;
 
 pub use api::batch;
 pub use api::kernels::{self, Kernels};
-pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, fresnel, sampling, shadowing, slopes};
+pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, SlopeStatistics, fresnel, sampling, shadowing, slopes};
 pub use config::{
-    Average, FootprintMeasure, OffPlaneModel, Parameters, Readings, Surface, Water, vocabulary,
+    Average, FootprintMeasure, OffPlaneModel, Parameters, Readings, SlopeBudget, Surface, Water, vocabulary,
 };
 pub use empirical::{EmpiricalLobe, Estimate, FineGrid, Gridded, Table, planes, table, table_file};
 pub use error::{Error, Warning};
 pub use numeric::{Real, Scalar, real};
 pub use render::{EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, ensemble_lobe, grid, mesh};
-pub use sea::{Salinity, Wind, WindProfile, spectrum, whitecap, wind};
+pub use sea::{Salinity, SpectrumModel, Wind, WindProfile, spectrum, whitecap, wind};
 pub use statistics::{Aim, Engagement, Ensemble, Exact, Proposal, Statistics, WhitecapMode, ensemble};
 pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

@@ -8,14 +8,14 @@ import sys
 import time
 from pathlib import Path
 
-from validation.figures import base, empirical, sea, variation
+from validation.figures import base, empirical, measured, sea, variation
 from validation.figures.claim import Figure
 from validation.figures.data import Command, CommandError, write
 from validation.figures.page import Result, page
 from validation.support import look
 from validation.support.command import COMMAND
 
-FIGURES: list[Figure] = sorted(sea.FIGURES + base.FIGURES + variation.FIGURES + empirical.FIGURES,
+FIGURES: list[Figure] = sorted(sea.FIGURES + base.FIGURES + variation.FIGURES + empirical.FIGURES + measured.FIGURES,
                                key=lambda figure: figure.name)
 #: Instances of an average; the tests run the quick number.
 INSTANCES, QUICK_INSTANCES = 50_000, 10_000

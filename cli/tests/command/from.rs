@@ -3,8 +3,8 @@
 use crate::{refuse, succeed};
 use exr::prelude::*;
 use prob_water::{
-    Average, FootprintMeasure, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeMeasure, Surface,
-    Wind,
+    Average, FootprintMeasure, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeBudget,
+    SlopeMeasure, SlopeStatistics, SpectrumModel, Surface, Wind,
 };
 use std::fs;
 use std::path::Path;
@@ -60,6 +60,9 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         time: 1.0 / 3.0,
         depth: 1e23,
         fetch: 7654.321,
+        spectrum: SpectrumModel::Elfouhaily,
+        slopes: SlopeStatistics::BreonHenriot,
+        slope_budget: SlopeBudget::Closed,
         wavelength: 1.064,
         ior: Some(4.0 / 3.0),
         extinction: Some(1.0 / 7.0),

@@ -11,4 +11,4 @@ mod water_leaving;
 pub use fresnel::{Fresnel, Reflectance};
 pub use lobe::{Facets, Lobe, Parts, WindAxes, up};
 pub use sampling::Sample;
-pub use slopes::SlopeMeasure;
+pub use slopes::{SlopeMeasure, SlopeStatistics};

@@ -1,12 +1,13 @@
 //! From parameters to a sea: everything is checked once and turned into coefficients.
 
 use super::parameters::{Parameters, Readings, Water};
+use super::slope_split::SlopeSplit;
 use super::vocabulary::check;
 use crate::brdf::lobe::steep_gain;
 use crate::brdf::slopes::GramCharlier;
-use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing, slopes};
-use crate::error::Error;
-use crate::sea::{WindProfile, whitecap};
+use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing};
+use crate::error::{Error, refuse};
+use crate::sea::{Spectrum, SpectrumModel, WindProfile, whitecap};
 
 impl Parameters {
     /// Checks everything and computes what depends on the parameters alone.
@@ -24,6 +25,10 @@ impl Parameters {
         check("time", self.time, self.time)?;
         check("depth", self.depth, self.depth)?;
         check("fetch", self.fetch, self.fetch)?;
+        let needs_fetch = matches!(self.spectrum, SpectrumModel::Jonswap | SpectrumModel::Tma);
+        if needs_fetch && self.fetch.is_infinite() {
+            return refuse("fetch", self.fetch, "above 0 m, finite, with spectrum = jonswap or tma");
+        }
         check("wavelength", self.wavelength, self.wavelength)?;
         if let Some(ior) = self.ior {
             check("ior", ior, ior)?;
@@ -38,7 +43,9 @@ impl Parameters {
             check("salinity", salinity, salinity)?;
         }
         let [ior, extinction] = self.index()?;
-        let variances = slopes::variances(&wind, footprint);
+        let spectrum = Spectrum::new(self.spectrum, &wind, self.water, self.depth, self.fetch);
+        let slopes = SlopeSplit::new(self.slope_budget, &wind, spectrum, self.slopes);
+        let variances = slopes.facets(footprint);
         let whitecap_fraction = whitecap::fraction(wind.w10);
         Ok(Water {
             parameters: *self,
@@ -48,6 +55,7 @@ impl Parameters {
             extinction,
             variances,
             whitecap_fraction,
+            slopes,
             lobe: Lobe {
                 facets: self.facets(&wind, [ior, extinction], variances),
                 whitecap_fraction: 0.0,
@@ -98,7 +106,7 @@ impl Parameters {
             proposal: [sigma_u, sigma_c],
             bounded: false,
             wind: WindAxes::new(self.wind_direction),
-            correction: GramCharlier::new(slopes::skewness(wind), as_printed),
+            correction: GramCharlier::new(self.slopes.skewness(wind), self.slopes.kurtosis(), as_printed),
             sigma_shadow: shadowing::sigma(wind.w10),
             reflectance: Reflectance::new(index, self.fresnel),
             slope_measure,

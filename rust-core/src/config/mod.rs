@@ -2,9 +2,11 @@
 
 mod configure;
 pub(crate) mod parameters;
+mod slope_split;
 pub mod vocabulary;
 
 pub use parameters::{
     Average, FootprintMeasure, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters,
     Readings, Surface, Water,
 };
+pub use slope_split::SlopeBudget;

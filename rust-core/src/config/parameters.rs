@@ -1,8 +1,9 @@
 //! What a user may choose, and the sea configured from it.
 
-use crate::brdf::{Fresnel, Lobe, SlopeMeasure, WindAxes};
+use super::slope_split::{SlopeBudget, SlopeSplit};
+use crate::brdf::{Fresnel, Lobe, SlopeMeasure, SlopeStatistics, WindAxes};
 use crate::error::{Error, Warning};
-use crate::sea::{Salinity, Wind, WindProfile, whitecap};
+use crate::sea::{Salinity, SpectrumModel, Wind, WindProfile, whitecap};
 use std::f64::consts::{LN_2, SQRT_2};
 
 /// How the report's defective equations are read.
@@ -132,6 +133,12 @@ pub struct Parameters {
     pub depth: f64,
     /// Distance to the shore the wind comes from, m: matters to 100 km.
     pub fetch: f64,
+    /// Whose energy spectrum the waves have.
+    pub spectrum: SpectrumModel,
+    /// Measured statistics of the slopes of all waves.
+    pub slopes: SlopeStatistics,
+    /// How these are divided between drawn waves and facets.
+    pub slope_budget: SlopeBudget,
     /// Micrometres.
     pub wavelength: f64,
     /// Refractive index; else that of water of a `salinity` at `wavelength` and `temperature`.
@@ -175,6 +182,9 @@ impl Default for Parameters {
             time: 0.0,
             depth: f64::INFINITY,
             fetch: f64::INFINITY,
+            spectrum: SpectrumModel::Report,
+            slopes: SlopeStatistics::CoxMunk,
+            slope_budget: SlopeBudget::Report,
             wavelength: 0.55,
             ior: None,
             extinction: None,
@@ -204,10 +214,12 @@ pub struct Water {
     pub ior: f64,
     /// Extinction coefficient in use; 0 where it changes nothing.
     pub extinction: f64,
-    /// Slope variances of the facets, upwind and crosswind (Eqs. 74-77).
+    /// Slope variances of the facets, upwind and crosswind (Eqs. 74-77, or what drawn waves leave).
     pub variances: [f64; 2],
     /// F_WC (Eq. 51), whether or not whitecaps are blended in.
     pub whitecap_fraction: f64,
+    /// Which waves are drawn, and what slopes they leave to facets, for every footprint.
+    pub(crate) slopes: SlopeSplit,
     /// The BRDF at a point.
     pub(crate) lobe: Lobe<f64>,
 }
@@ -271,6 +283,17 @@ impl Water {
             return 0.0;
         }
         whitecap::probability(self.wind.friction_velocity, 100.0 * acceleration)
+    }
+
+    /// Smallest and largest wave number drawn (Eqs. 21-22, or by the slope budget), rad/cm; `None`: there are no waves.
+    pub fn wave_numbers(&self) -> Option<[f64; 2]> {
+        self.slopes.range(self.footprint)
+    }
+
+    /// Slope variances, upwind and crosswind, of the facets of places with another footprint in m, beside waves that fade out
+    /// in an octave about two footprints.
+    pub fn facet_variances(&self, footprint: f64) -> [f64; 2] {
+        self.slopes.facets_beside_fading(footprint)
     }
 
     /// The same sea under a wind from another azimuth, in degrees.

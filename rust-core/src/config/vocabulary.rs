@@ -4,10 +4,11 @@ use super::parameters::{
     Average, DRAWN, FootprintMeasure, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel,
     Parameters, Readings, SEEDS, Surface, Water,
 };
+use super::slope_split::SlopeBudget;
 use crate::brdf::fresnel::WAVELENGTHS;
-use crate::brdf::{Fresnel, SlopeMeasure};
+use crate::brdf::{Fresnel, SlopeMeasure, SlopeStatistics};
 use crate::error::{Error, refuse};
-use crate::sea::{Salinity, Wind, wind};
+use crate::sea::{Salinity, SpectrumModel, Wind, wind};
 
 /// A parameter: what documentation and help show of it, and how it is read and written.
 #[derive(Debug, Clone, Copy)]
@@ -116,7 +117,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 28] = [
+pub const ENTRIES: [Entry; 31] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -289,6 +290,39 @@ pub const ENTRIES: [Entry; 28] = [
         surfaces: &DRAWN,
         kind: Kind::Number,
         access: field!(number, fetch, |d| d > 0.0),
+    },
+    Entry {
+        name: "spectrum",
+        unit: "",
+        default: "report",
+        allowed: "report, jonswap, tma, elfouhaily",
+        help: "wave energy spectrum: the `report`'s (Eqs. 3-20), `jonswap`'s of a short `fetch`, the same where `depth` limits \
+               the waves (`tma`), or Elfouhaily's (`elfouhaily`)",
+        surfaces: &DRAWN,
+        kind: Kind::Word,
+        access: field!(word, spectrum, SPECTRA),
+    },
+    Entry {
+        name: "slopes",
+        unit: "",
+        default: "cox_munk",
+        allowed: "cox_munk, breon_henriot",
+        help: "measured slopes of all waves: Cox and Munk's (Eqs. 76-78, `cox_munk`) or Breon and Henriot's \
+               (`breon_henriot`)",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, slopes, STATISTICS),
+    },
+    Entry {
+        name: "slope_budget",
+        unit: "",
+        default: "report",
+        allowed: "report, closed",
+        help: "slope variance of the facets: the `report`'s of the footprint, or what drawn waves leave of that of all \
+               waves (`closed`)",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, slope_budget, BUDGETS),
     },
     Entry {
         name: "wavelength",
@@ -519,6 +553,15 @@ const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Av
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
+const SPECTRA: [(&str, SpectrumModel); 4] = [
+    ("report", SpectrumModel::Report),
+    ("jonswap", SpectrumModel::Jonswap),
+    ("tma", SpectrumModel::Tma),
+    ("elfouhaily", SpectrumModel::Elfouhaily),
+];
+const BUDGETS: [(&str, SlopeBudget); 2] = [("report", SlopeBudget::Report), ("closed", SlopeBudget::Closed)];
+const STATISTICS: [(&str, SlopeStatistics); 2] =
+    [("cox_munk", SlopeStatistics::CoxMunk), ("breon_henriot", SlopeStatistics::BreonHenriot)];
 const READINGS: [(&str, Readings); 2] =
     [("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)];
 
@@ -684,6 +727,9 @@ mod tests {
             ("time", Value::Number(-3.5)),
             ("depth", Value::Number(2.0)),
             ("fetch", Value::Number(5e3)),
+            ("spectrum", Value::Text("elfouhaily".into())),
+            ("slopes", Value::Text("breon_henriot".into())),
+            ("slope_budget", Value::Text("closed".into())),
             ("wavelength", Value::Number(1.064)),
             ("ior", Value::Number(1.33)),
             ("extinction", Value::Number(0.25)),
@@ -746,6 +792,9 @@ mod tests {
                 time: -0.0,
                 depth: 1e23,
                 fetch: 5e15,
+                spectrum: SpectrumModel::Elfouhaily,
+                slopes: SlopeStatistics::BreonHenriot,
+                slope_budget: SlopeBudget::Closed,
                 wavelength: 1.064,
                 ior: Some(4.0 / 3.0),
                 extinction: Some(1.0 / 7.0),
@@ -1007,6 +1056,22 @@ mod tests {
         let refused = water.on(&[Surface::Flat, Surface::Ensemble]).unwrap_err().to_string();
         assert_eq!(refused, "surface = instance is not served here: allowed is flat, ensemble");
         assert!(water.on(&[Surface::Instance]).is_ok());
+    }
+
+    #[test]
+    fn short_seas_need_a_fetch() {
+        for word in ["jonswap", "tma"] {
+            let mut builder = Builder::default();
+            builder.set("spectrum", &Value::Text(word.into())).unwrap();
+            let refused = builder.parameters().unwrap().configure().unwrap_err();
+            assert_eq!(refused.parameters(), ["fetch"]);
+            assert_eq!(
+                refused.to_string(),
+                "fetch = inf is out of range: allowed is above 0 m, finite, with spectrum = jonswap or tma"
+            );
+            builder.set("fetch", &Value::Number(5e3)).unwrap();
+            builder.parameters().unwrap().configure().unwrap();
+        }
     }
 
     #[test]

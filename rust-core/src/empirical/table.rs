@@ -272,7 +272,10 @@ pub(crate) struct Slice {
 }
 
 /// Parameters that a table has only one value of.
-pub(crate) const SHARED: [&str; 9] = [
+pub(crate) const SHARED: [&str; 12] = [
+    "spectrum",
+    "slopes",
+    "slope_budget",
     "components",
     "depth",
     "fetch",
@@ -283,6 +286,9 @@ pub(crate) const SHARED: [&str; 9] = [
     "shadowing",
     "gram_charlier",
 ];
+
+/// Those of them that were added later: a file tells them where they are not the defaults.
+pub(crate) const ADDED: [&str; 3] = ["spectrum", "slopes", "slope_budget"];
 
 /// What else it was made with: how many points were drawn and which, and of which water the reflectance was that its
 /// numbers do not have.

@@ -12,7 +12,8 @@
 //! The metadata have the format's name and version, the version of this crate, the parameters by the vocabulary's names
 //! and the units of all arrays. Every array has a check sum.
 
-use super::table::{Grid, MADE_WITH, SHARED, Table, kept};
+use super::table::{ADDED, Grid, MADE_WITH, SHARED, Table, kept};
+use crate::config::Parameters;
 use crate::config::vocabulary::Value;
 use crate::error::Error;
 use npyz::WriterBuilder;
@@ -79,8 +80,11 @@ impl Table {
 
     /// What the file says of itself.
     pub fn metadata(&self) -> String {
+        let usual = Parameters::default();
+        let told = |name: &&&str| !ADDED.contains(*name) || self.parameters.get(name) != usual.get(name);
         let parameters: Map<_, _> = SHARED
             .iter()
+            .filter(told)
             .chain(&MADE_WITH)
             .filter_map(|name| {
                 let value = match self.parameters.get(name)? {
@@ -152,7 +156,8 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
         return Err(format!("its format_version is {}, expected {FORMAT_VERSION}", told("format_version")));
     }
     let parameters = told("parameters");
-    if let Some(missing) = SHARED.iter().find(|name| parameters.get(name).is_none()) {
+    if let Some(missing) = SHARED.iter().find(|name| !ADDED.contains(name) && parameters.get(name).is_none())
+    {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {
@@ -226,7 +231,7 @@ fn array<T: npyz::Deserialize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Parameters, Surface};
+    use crate::config::Surface;
     use crate::empirical::table::Plan;
 
     fn small() -> Table {

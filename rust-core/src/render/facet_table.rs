@@ -1,7 +1,7 @@
 //! Facets for any footprint, tabulated: for a footprint that changes from place to place.
 
+use crate::brdf::Facets;
 use crate::brdf::lobe::BOUND_SLACK;
-use crate::brdf::{Facets, slopes};
 use crate::config::Water;
 use crate::numeric::packets::{Packets, Tabulated};
 use crate::numeric::{Real, Scalar};
@@ -34,7 +34,7 @@ impl FacetTable<f64> {
             let f = water.parameters.facets(
                 &water.wind,
                 [water.ior, water.extinction],
-                slopes::variances(&water.wind, footprint),
+                water.facet_variances(footprint),
             );
             // Where no bound is in force nothing reaches the slack.
             let bound = if f.bounded { f.bound } else { BOUND_SLACK };

@@ -3,7 +3,6 @@
 //! is what the drawn waves say of Eqs. 53-54.
 
 use super::grid::{CELLS, Grid, Layout, Ring, needed, split};
-use crate::brdf::slopes;
 use crate::config::{Surface, Water};
 use crate::error::Error;
 use crate::numeric::root::bisect;
@@ -137,7 +136,7 @@ impl Mesh {
             .iter()
             .map(|c| c.seen_at(footprint).slope_variance() * (1.0 - interpolated(c.wave_number * cell)))
             .sum();
-        let total = |d: f64| slopes::variances(&self.water.wind, d).iter().sum::<f64>();
+        let total = |d: f64| self.water.facet_variances(d).iter().sum::<f64>();
         let wanted = total(footprint) + lost;
         // No facets are rougher than those of a thousand times the footprint, for what interpolation takes.
         bisect(footprint.ln(), (1e3 * footprint).ln(), |ln| total(ln.exp()) >= wanted).exp()

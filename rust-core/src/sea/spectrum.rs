@@ -1,192 +1,158 @@
 //! The wave energy spectrum: Eqs. 3-22. Everything here is cgs, as in the report.
 
+use super::bjerkaas_riedel::BjerkaasRiedel;
+use super::dispersion::Dispersion;
+use super::elfouhaily::Elfouhaily;
+use super::jonswap::Jonswap;
 use super::salinity::Salinity;
-use super::whitecap::GRAVITY;
 use super::wind::WindProfile;
-use crate::numeric::root::bisect;
+use crate::numeric::quadrature::{gauss_legendre, panels};
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::LazyLock;
 
-/// Surface tension tau, dyne/cm.
-const TENSION: f64 = 76.3;
-const ALPHA: f64 = 8.1e-3;
-const BETA: f64 = 0.74;
 /// A of Eq. 19: the part of the energy that does not depend on direction.
 const ISOTROPIC: f64 = 0.2;
 /// f of Eq. 22: waves longer than this many footprints are drawn.
 const FOOTPRINTS: f64 = 2.0;
-/// The fetch up to which it matters, m.
-const LONGEST_FETCH: f64 = 100e3;
-/// Stacey's spectrum takes part from this friction velocity beside Pierson and Moskowitz (Eq. 15), cm/s,
-const STACEY_LOW: f64 = 35.8;
-/// and from this one beside Kitaigorodskii (Eq. 17).
-const STACEY_HIGH: f64 = 75.76;
 
-/// A wave energy spectrum S(k): Bjerkaas and Riedel's as the report has it.
+/// Whose spectrum the waves have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SpectrumModel {
+    /// Bjerkaas and Riedel's, as the report has it (Eqs. 3-22).
+    #[default]
+    Report,
+    /// JONSWAP's: a sea with a short fetch.
+    Jonswap,
+    /// TMA's: JONSWAP's in water whose depth limits the waves.
+    Tma,
+    /// Elfouhaily et al.'s unified spectrum.
+    Elfouhaily,
+}
+
+/// A wave energy spectrum S(k).
 #[derive(Debug, Clone, Copy)]
 pub struct Spectrum {
-    /// tau/rho, cm^3/s^2.
-    tension: f64,
-    /// Depth of the water, cm.
-    depth: f64,
-    fetch: Option<Fetch>,
-    friction_velocity: f64,
-    /// The peak of S_1 (Eq. 7), up to which Pierson and Moskowitz's form holds, rad/cm.
+    dispersion: Dispersion,
+    form: Form,
+    /// The peak, rad/cm; of the report's S_1 (Eq. 7).
     pub k0: f64,
-    /// End of Stacey's range (Eq. 8), rad/cm.
+    /// End of the long waves' form, rad/cm: of Stacey's range (Eq. 8), of JONSWAP's part; Elfouhaily's has one form up to k2.
     pub k1: f64,
-    /// End of Kitaigorodskii's range and of the spectrum, where omega = 20 pi, rad/cm.
+    /// End of the spectrum, rad/cm: where omega = 20 pi; Elfouhaily's is ten times the wave number of the slowest waves.
     pub k2: f64,
-    /// k_m^2 of Eq. 5, where surface tension and gravity are equal, (rad/cm)^2.
-    km2: f64,
     /// Smallest wave number drawn (Eq. 21), rad/cm; infinite in a calm.
     pub k_min: f64,
-    /// The factors of Eq. 16 that do not depend on k, with p of Eq. 6.
-    scale_2: f64,
 }
 
-/// The parts of the spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
-    PiersonMoskowitz,
-    Stacey,
-    Kitaigorodskii,
-    Nothing,
-}
-
-/// Eqs. 11-13.
 #[derive(Debug, Clone, Copy)]
-struct Fetch {
-    /// omega_p, rad/s.
-    peak: f64,
+enum Form {
+    Report(BjerkaasRiedel),
+    Jonswap(Jonswap),
+    Elfouhaily(Elfouhaily),
 }
 
 impl Spectrum {
     /// The spectrum of a wind over water of a depth and with a fetch in m, both above 0, up to infinity.
-    pub fn new(wind: &WindProfile, water: Salinity, depth: f64, fetch: f64) -> Self {
-        let density = match water {
-            Salinity::Ocean => 1.025,
-            Salinity::Fresh => 1.0,
+    pub fn new(model: SpectrumModel, wind: &WindProfile, water: Salinity, depth: f64, fetch: f64) -> Self {
+        let dispersion = Dispersion::new(water, depth);
+        let open = |fetch| BjerkaasRiedel::new(wind, dispersion, fetch);
+        let (form, k0, k1, k2, k_min) = match model {
+            SpectrumModel::Report => {
+                let s = open(fetch);
+                (Form::Report(s), s.k0, s.k1, s.k2, s.k_min())
+            }
+            SpectrumModel::Jonswap | SpectrumModel::Tma => {
+                let limits = if model == SpectrumModel::Tma { depth } else { f64::INFINITY };
+                let s = Jonswap::new(wind, fetch, limits, open(f64::INFINITY));
+                (Form::Jonswap(s), s.peak, s.k1(), s.open.k2, s.k_min())
+            }
+            SpectrumModel::Elfouhaily => {
+                let s = Elfouhaily::new(wind, fetch);
+                let [low, high] = s.range();
+                (Form::Elfouhaily(s), s.peak, high, high, low)
+            }
         };
-        let tension = TENSION / density;
-        let km2 = GRAVITY / tension;
-        let w = wind.friction_velocity;
-        // Eq. 4 for deep water at 10 Hz; it rises with k.
-        let rate = (20.0 * PI).powi(2);
-        let k2 = bisect(0.0, rate / GRAVITY, |k| (GRAVITY + tension * k * k) * k >= rate);
-        let p = 5.0 - w.log10();
-        let shoulder = k2 * (1.0 + k2 * k2 / km2);
-        let scale_2 = 0.4375 * (2.0 * PI / GRAVITY.sqrt()).powf(p - 1.0) * shoulder.powf(0.5 * (4.0 - p));
-        let scale_1 =
-            (ALPHA / 0.875).powi(2) * (GRAVITY / (4.0 * PI * PI)).powf(p - 1.0) * shoulder.powf(p - 4.0);
-        let fetch = (fetch <= LONGEST_FETCH && wind.w10 > 0.0)
-            .then(|| Fetch { peak: 22.0 * (GRAVITY * GRAVITY / (100.0 * fetch * 100.0 * wind.w10)).cbrt() });
-        Self {
-            tension,
-            depth: 100.0 * depth,
-            fetch,
-            friction_velocity: w,
-            k0: (2.0 * BETA / 3.0).sqrt() * GRAVITY / (100.0 * wind.w19_5).powi(2),
-            k1: meeting(scale_1, k2, km2),
-            k2,
-            km2,
-            k_min: 10f64.powf(-2.108 * w.log10() - 0.267),
-            scale_2,
-        }
+        Self { dispersion, form, k0, k1, k2, k_min }
     }
 
     /// Largest wave number drawn (Eq. 22), rad/cm, for a footprint in m; `None` where the wind raises no
     /// waves as long as that.
     pub fn k_max(&self, footprint: f64) -> Option<f64> {
-        let shortest = 2.0 * PI / (FOOTPRINTS * 100.0 * footprint);
+        let shortest = shortest(footprint);
         (self.k_min < self.k2).then(|| self.k2.min(shortest.max(10f64.sqrt() * self.k_min)))
     }
 
     /// Angular frequency, rad/s, of a wave number in rad/cm (Eq. 4).
     pub fn frequency(&self, k: f64) -> f64 {
-        ((GRAVITY + self.tension * k * k) * k * (k * self.depth).tanh()).sqrt()
+        self.dispersion.frequency(k)
     }
 
-    /// S(k), cm^3 (Eqs. 10, 15, 17); 0 beyond k2.
+    /// S(k), cm^3; 0 beyond k2.
     pub fn density(&self, k: f64) -> f64 {
-        self.form(k).1
+        match &self.form {
+            Form::Report(s) => s.density(k),
+            Form::Jonswap(s) => s.density(k),
+            Form::Elfouhaily(s) => s.density(k),
+        }
     }
 
-    /// Which form the spectrum has at k, and its value.
-    fn form(&self, k: f64) -> (Form, f64) {
-        let w = self.friction_velocity;
-        let (form, s, stacey) = if k <= self.k1.min(self.k2) {
-            (Form::PiersonMoskowitz, self.pierson_moskowitz(k), k > self.k0 && w >= STACEY_LOW)
-        } else if k <= self.k2 {
-            (Form::Kitaigorodskii, self.kitaigorodskii(k), w >= STACEY_HIGH)
-        } else {
-            return (Form::Nothing, 0.0);
-        };
-        let other = if stacey { self.stacey(k) } else { 0.0 };
-        if other > s { (Form::Stacey, other) } else { (form, s) }
+    /// F of a wave number in rad/cm, 1/rad, for an angle in radians from phi_W: 0 beyond a quarter turn.
+    pub fn spreading(&self, k: f64, angle: f64) -> f64 {
+        match &self.form {
+            Form::Elfouhaily(s) if angle.abs() < FRAC_PI_2 => (1.0 + s.delta(k) * (2.0 * angle).cos()) / PI,
+            Form::Elfouhaily(_) => 0.0,
+            _ => spreading(angle),
+        }
+    }
+
+    /// Whether F is the same for all wave numbers.
+    pub(crate) fn spreads_alike(&self) -> bool {
+        !matches!(self.form, Form::Elfouhaily(_))
+    }
+
+    /// The part of a wave's slope variance that lies along the wind, of a wave number in rad/cm: the mean of cos^2 over F.
+    fn along(&self, k: f64) -> f64 {
+        match &self.form {
+            Form::Elfouhaily(s) => 0.5 + 0.25 * s.delta(k),
+            _ => 0.75 - 0.25 * ISOTROPIC,
+        }
+    }
+
+    /// Slope variances along and across the wind of the waves between some [pieces](Self::pieces)' ends, of each what `share` leaves.
+    pub(crate) fn slope_variances(&self, pieces: &[f64], share: impl Fn(f64) -> f64) -> [f64; 2] {
+        static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_legendre(16));
+        let mut sums = [0.0; 2];
+        for piece in pieces.windows(2) {
+            let (start, end) = (piece[0].ln(), piece[1].ln());
+            for (log_k, width) in panels(&RULE, start, end, 1.0) {
+                let k = log_k.exp();
+                let (variance, along) = (width * k.powi(3) * self.density(k) * share(k), self.along(k));
+                sums[0] += variance * along;
+                sums[1] += variance * (1.0 - along);
+            }
+        }
+        sums
     }
 
     /// Between these wave numbers, in order, rad/cm, the spectrum is smooth, and as flat as a few polynomials: its peak,
-    /// where its form changes, and the flanks of the peak that a fetch adds.
+    /// where its form changes, and the flanks of a narrow peak.
     pub(crate) fn pieces(&self, low: f64, high: f64) -> Vec<f64> {
-        const SCAN: i32 = 512;
-        let at = |i: i32| low * (high / low).powf(f64::from(i) / f64::from(SCAN));
-        let mut ends = vec![low, high, self.k0];
-        for i in 0..SCAN {
-            let (a, b) = (at(i), at(i + 1));
-            let form = self.form(a).0;
-            if self.form(b).0 != form {
-                ends.push(bisect(a, b, |k| self.form(k).0 != form));
-            }
-        }
-        for off in
-            self.fetch.iter().flat_map(|fetch| [0.75, 0.88, 1.0, 1.15, 1.32].map(|off| off * fetch.peak))
-        {
-            if self.frequency(low) < off && off < self.frequency(high) {
-                ends.push(bisect(low, high, |k| self.frequency(k) >= off));
-            }
-        }
+        let mut ends = match &self.form {
+            Form::Report(s) => s.breaks(low, high),
+            Form::Jonswap(s) => s.breaks(low, high),
+            Form::Elfouhaily(s) => s.breaks(),
+        };
+        ends.extend([low, high]);
         ends.retain(|k| (low..=high).contains(k));
         ends.sort_by(f64::total_cmp);
         ends.dedup();
         ends
     }
-
-    /// Eq. 10 with the correction for fetch, Eq. 11.
-    fn pierson_moskowitz(&self, k: f64) -> f64 {
-        let s = ALPHA / (2.0 * k.powi(3)) * (-1.5 * (self.k0 / k).powi(2)).exp();
-        let Some(Fetch { peak }) = self.fetch else { return s };
-        let off = (self.frequency(k) - peak) / peak;
-        let width = if off <= 0.0 { 0.0098 } else { 0.0162 };
-        s * 3.3f64.powf((-off * off / width).exp())
-    }
-
-    /// Eq. 14.
-    fn stacey(&self, k: f64) -> f64 {
-        let wind = 271.5 + 13.585 * self.friction_velocity;
-        wind * (GRAVITY / k).sqrt() * (2.53 * (0.4 * PI - (GRAVITY * k).sqrt())).exp()
-    }
-
-    /// Eq. 16.
-    fn kitaigorodskii(&self, k: f64) -> f64 {
-        let x = k * k / self.km2;
-        let steep = k * (1.0 + x);
-        self.scale_2 * (1.0 + 3.0 * x) / (steep * steep * steep.sqrt())
-    }
 }
 
-/// k1 of Eq. 8: the smallest root of `scale (1 + x)^5/(1 + 3 x)^2 = k`, `x = k^2/k_m^2`, up to k2; k2 where there is
-/// none. The difference falls up to a single minimum and rises after it.
-fn meeting(scale: f64, k2: f64, km2: f64) -> f64 {
-    let excess = |k: f64| {
-        let x = k * k / km2;
-        scale * (1.0 + x).powi(5) / (1.0 + 3.0 * x).powi(2) - k
-    };
-    let rises = |k: f64| {
-        let x = k * k / km2;
-        scale * 2.0 * k / km2 * (9.0 * x - 1.0) * (1.0 + x).powi(4) / (1.0 + 3.0 * x).powi(3) > 1.0
-    };
-    let lowest = if rises(k2) { bisect(0.0, k2, rises) } else { k2 };
-    if excess(lowest) > 0.0 { k2 } else { bisect(0.0, lowest, |k| excess(k) <= 0.0) }
+/// The wave number of the shortest waves that a footprint in m resolves, rad/cm: they are [`FOOTPRINTS`] footprints long.
+pub(crate) fn shortest(footprint: f64) -> f64 {
+    2.0 * PI / (FOOTPRINTS * 100.0 * footprint)
 }
 
 /// F of Eq. 19, 1/rad, for an angle in radians from phi_W.
@@ -198,52 +164,22 @@ pub fn spreading(angle: f64) -> f64 {
     }
 }
 
+/// The share of a wave's energy, for a wave number in rad/m, that stays geometry where the footprint in m changes from
+/// place to place: 1 for waves longer than 2 D, 0 for shorter ones, and between in an octave, so that no wave ends at a
+/// line. The rest is facets there.
+pub fn share(wave_number: f64, footprint: f64) -> f64 {
+    (0.5 - (wave_number * footprint / PI).log2()).clamp(0.0, 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sea::Wind;
+    use crate::sea::whitecap::GRAVITY;
 
     fn spectrum(w: f64) -> Spectrum {
         let wind = Wind::FrictionVelocity(w).profile().unwrap();
-        Spectrum::new(&wind, Salinity::Ocean, f64::INFINITY, f64::INFINITY)
-    }
-
-    #[test]
-    fn k2_is_a_wave_of_ten_hertz() {
-        for (water, k2) in [(Salinity::Fresh, 2.6221), (Salinity::Ocean, 2.6354)] {
-            let wind = Wind::FrictionVelocity(8.0).profile().unwrap();
-            let s = Spectrum::new(&wind, water, f64::INFINITY, f64::INFINITY);
-            assert!((s.frequency(s.k2) - 20.0 * PI).abs() < 1e-12);
-            assert!((s.k2 - k2).abs() < 5e-5, "{}", s.k2);
-        }
-    }
-
-    /// Below w* = 7.885 Eq. 8 has no root; above, k1 is where S1 without its exponential meets S2.
-    #[test]
-    fn k1_is_the_first_meeting_of_two_spectra() {
-        assert_eq!(spectrum(7.88).k1, spectrum(7.88).k2);
-        let mut last = f64::INFINITY;
-        for w in [7.9, 8.0, 10.0, 16.0, 24.0, 56.0, 120.0, 238.65] {
-            let s = spectrum(w);
-            let without_exponential = ALPHA / (2.0 * s.k1.powi(3));
-            assert!((s.kitaigorodskii(s.k1) / without_exponential - 1.0).abs() < 1e-9, "w* = {w}");
-            assert!(s.k1 < last, "w* = {w}");
-            // It is the first: S2 lies below all the way.
-            for i in 1..200 {
-                let k = s.k1 * f64::from(i) / 200.0;
-                assert!(s.kitaigorodskii(k) < ALPHA / (2.0 * k.powi(3)));
-            }
-            last = s.k1;
-        }
-    }
-
-    #[test]
-    fn k0_is_the_peak() {
-        for w in [2.0, 8.0, 56.0, 200.0] {
-            let s = spectrum(w);
-            let peak = s.pierson_moskowitz(s.k0);
-            assert!(s.pierson_moskowitz(s.k0 * 1.001) < peak && s.pierson_moskowitz(s.k0 / 1.001) < peak);
-        }
+        Spectrum::new(SpectrumModel::Report, &wind, Salinity::Ocean, f64::INFINITY, f64::INFINITY)
     }
 
     #[test]
@@ -258,7 +194,7 @@ mod tests {
     #[test]
     fn fetch_and_depth() {
         let wind = Wind::FrictionVelocity(16.0).profile().unwrap();
-        let of = |depth, fetch| Spectrum::new(&wind, Salinity::Ocean, depth, fetch);
+        let of = |depth, fetch| Spectrum::new(SpectrumModel::Report, &wind, Salinity::Ocean, depth, fetch);
         let (open, near) = (of(f64::INFINITY, f64::INFINITY), of(f64::INFINITY, 5e3));
         let mut most = 0.0f64;
         for i in 0..2000 {
@@ -282,7 +218,7 @@ mod tests {
         assert!(spectrum(0.473).k_max(0.15).is_some());
         let calm = Wind::FrictionVelocity(0.0).profile().unwrap();
         for fetch in [100.0, f64::INFINITY] {
-            let s = Spectrum::new(&calm, Salinity::Ocean, f64::INFINITY, fetch);
+            let s = Spectrum::new(SpectrumModel::Report, &calm, Salinity::Ocean, f64::INFINITY, fetch);
             assert!([1e-3, 0.1, s.k2, 10.0].iter().all(|k| s.density(*k) == 0.0));
         }
         for w in [0.473, 2.0, 8.0, 56.0, 238.65] {
@@ -291,6 +227,72 @@ mod tests {
                 let k_max = s.k_max(footprint).unwrap();
                 assert!(s.k_min < k_max && k_max <= s.k2);
             }
+        }
+    }
+
+    fn every(w: f64) -> Vec<Spectrum> {
+        let wind = Wind::FrictionVelocity(w).profile().unwrap();
+        let of = |model, fetch| Spectrum::new(model, &wind, Salinity::Ocean, f64::INFINITY, fetch);
+        vec![
+            of(SpectrumModel::Report, f64::INFINITY),
+            of(SpectrumModel::Report, 5e3),
+            of(SpectrumModel::Jonswap, 800.0),
+            of(SpectrumModel::Jonswap, 1e5),
+            Spectrum::new(SpectrumModel::Tma, &wind, Salinity::Ocean, 0.5, 2e4),
+            of(SpectrumModel::Elfouhaily, f64::INFINITY),
+            of(SpectrumModel::Elfouhaily, 1e4),
+        ]
+    }
+
+    /// Slope variances against sums at equal steps of ln k and of the angle, for every spectrum.
+    #[test]
+    fn slope_variances_are_the_integrals() {
+        for s in [2.0, 8.0, 24.0, 56.0].into_iter().flat_map(every) {
+            for (low, high) in [(s.k_min, s.k2), (s.k_min, 3.0 * s.k_min), (s.k_min, 0.5 * s.k2)] {
+                let share = |k: f64| 1.0 / (1.0 + k);
+                let (n, m) = (4000, 64);
+                let step = (high / low).ln() / f64::from(n);
+                let turn = PI / f64::from(m);
+                let mut sums = [0.0; 2];
+                for i in 0..n {
+                    let k = low * ((f64::from(i) + 0.5) * step).exp();
+                    let variance = s.density(k) * k.powi(3) * step * share(k);
+                    for j in 0..m {
+                        let angle = (f64::from(j) + 0.5) * turn - FRAC_PI_2;
+                        let spread = variance * s.spreading(k, angle) * turn;
+                        sums[0] += spread * angle.cos().powi(2);
+                        sums[1] += spread * angle.sin().powi(2);
+                    }
+                }
+                let found = s.slope_variances(&s.pieces(low, high), share);
+                for (found, sum) in found.into_iter().zip(sums) {
+                    assert!((found / sum - 1.0).abs() < 1e-3, "{s:?} to {high}: {found} {sum}");
+                }
+            }
+        }
+    }
+
+    /// F has the integral 1 over the half turn before the wind for every wave number, is not negative, and 0 beyond.
+    #[test]
+    fn every_spreading_is_normalised() {
+        for s in [2.0, 24.0].into_iter().flat_map(every) {
+            for k in [s.k_min, s.k0, 0.1, 3.7] {
+                let turn = PI / 1000.0;
+                let all: Vec<_> =
+                    (0..1000).map(|i| s.spreading(k, (f64::from(i) + 0.5) * turn - FRAC_PI_2)).collect();
+                let sum: f64 = all.iter().map(|f| f * turn).sum();
+                assert!((sum - 1.0).abs() < 1e-9 && all.iter().all(|f| *f >= 0.0));
+                assert_eq!(s.spreading(k, 1.6), 0.0);
+            }
+        }
+    }
+
+    /// In a calm no spectrum has waves.
+    #[test]
+    fn every_calm_is_flat() {
+        for s in every(0.0) {
+            assert!(s.k_min.is_infinite() && s.k_max(0.15).is_none());
+            assert!([1e-3, 0.1, s.k2].iter().all(|k| s.density(*k) == 0.0));
         }
     }
 }

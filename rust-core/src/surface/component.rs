@@ -1,6 +1,7 @@
 //! One drawn wave.
 
-use std::f64::consts::{PI, TAU};
+use crate::sea::spectrum::share;
+use std::f64::consts::TAU;
 
 /// One drawn wave, in metres and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,11 +43,4 @@ impl Component {
     pub(crate) fn acceleration_variance(&self) -> f64 {
         0.5 * (self.amplitude * self.frequency * self.frequency).powi(2)
     }
-}
-
-/// The share of a wave's energy, for a wave number in rad/m, that stays geometry where the footprint in m changes from
-/// place to place: 1 for waves longer than 2 D, 0 for shorter ones, and between in an octave, so that no wave ends at a
-/// line. The rest is facets there.
-pub fn share(wave_number: f64, footprint: f64) -> f64 {
-    (0.5 - (wave_number * footprint / PI).log2()).clamp(0.0, 1.0)
 }

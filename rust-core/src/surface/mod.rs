@@ -7,7 +7,8 @@ mod realised;
 mod wave_sums;
 mod waves;
 
-pub use component::{Component, share};
+pub use crate::sea::spectrum::share;
+pub use component::Component;
 pub use random::{Draws, InstanceRng};
 pub use ray::SurfaceRay;
 pub use realised::{Point, Surface, normal};

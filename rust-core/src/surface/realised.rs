@@ -1,8 +1,9 @@
 //! A realised surface: heights, slopes, normals and accelerations of a drawn sea at a time (Eqs. 31, 38-42, 52), and
 //! the bounds by which a ray is cast onto it.
 
-use super::component::{Component, share};
+use super::component::Component;
 use crate::numeric::trigonometry::{LANES, sin_cos};
+use crate::sea::spectrum::share;
 use std::f64::consts::TAU;
 
 /// A drawn sea at one time: a sum of cosines, kept by property so that the sums vectorise. Metres and seconds. The

@@ -9,7 +9,6 @@ use super::random::{Draws, InstanceRng};
 use super::realised::Surface;
 use crate::config::Water;
 use crate::sea::Spectrum;
-use crate::sea::spectrum::spreading;
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Its multiples' fractions spread most evenly.
@@ -46,7 +45,7 @@ impl Waves {
 
     /// The wave of a wave number in rad/cm, a phase and an azimuth: amplitude as in Eq. 38, frequency of Eq. 4.
     pub fn component(&self, k: f64, phase: f64, azimuth: f64) -> Component {
-        let energy = self.spectrum.density(k) * spreading(azimuth - self.wind_azimuth) * k;
+        let energy = self.spectrum.density(k) * self.spectrum.spreading(k, azimuth - self.wind_azimuth) * k;
         Component {
             wave_number: 100.0 * k,
             phase,
@@ -96,10 +95,9 @@ impl Water {
 
     fn waves_down_to(&self, footprint: f64) -> Waves {
         let p = &self.parameters;
-        let spectrum = Spectrum::new(&self.wind, p.water, p.depth, p.fetch);
         Waves {
-            spectrum,
-            log_range: spectrum.k_max(footprint).map(|k_max| [spectrum.k_min.ln(), k_max.ln()]),
+            spectrum: self.slopes.spectrum,
+            log_range: self.slopes.range(footprint).map(|[low, high]| [low.ln(), high.ln()]),
             components: p.components as usize,
             wind_azimuth: p.wind_direction.to_radians(),
         }

@@ -1,7 +1,7 @@
 //! What any BRDF of water must hold: albedo at most 1, reciprocity, finite values, limits.
 
 use crate::common::{HURRICANES, UP, WINDS, direction, integrate, water, worse};
-use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, Water};
+use prob_water::{Fresnel, Lobe, Parameters, Readings, SlopeMeasure, SlopeStatistics, Water};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
 /// The albedo of a flat sea for a source at a zenith angle and an azimuth, degrees.
@@ -49,6 +49,28 @@ fn flat_sea_albedo_is_at_most_one() {
     }
     // The 0.99 that the bound leaves, and quadrature: 0.9901 in a calm at 89.999 degrees.
     pinned(largest, 0.990, 5e-4);
+}
+
+/// Breon and Henriot's slopes reflect no more than came in either, in tilt angles and in slopes.
+#[test]
+fn albedo_with_breon_and_henriots_slopes() {
+    for w in [0.0, 2.0, 8.0, 24.0, 56.0, 150.0, 238.65] {
+        for slope_measure in [SlopeMeasure::Angle, SlopeMeasure::Slope] {
+            let water = water(w, |p| {
+                p.slopes = SlopeStatistics::BreonHenriot;
+                p.slope_measure = slope_measure;
+            });
+            for theta in [0.0, 60.0, 80.0, 87.0, 89.0, 89.97] {
+                for phi in [0.0, 90.0, 180.0] {
+                    let found = albedo(&water, theta, phi, 250);
+                    assert!(
+                        found > 0.01 && found <= 1.0,
+                        "{found}: w* {w}, {theta} deg, azimuth {phi}, {slope_measure:?}"
+                    );
+                }
+            }
+        }
+    }
 }
 
 /// The largest index allowed, far from water's, reflects no more than came in either, and at normal incidence its rho_n,

@@ -2,7 +2,9 @@
 
 use crate::common::{direction, dot, water};
 use prob_water::surface::{Draws, InstanceRng};
-use prob_water::{Engagement, Ensemble, Exact, Surface, Water, whitecap};
+use prob_water::{
+    Engagement, Ensemble, Exact, Parameters, SlopeBudget, SpectrumModel, Surface, Water, whitecap,
+};
 use rayon::prelude::*;
 
 fn sea(friction_velocity: f64, footprint: f64, components: u32) -> Water {
@@ -167,6 +169,28 @@ fn compare_with_the_ray_cast(water: &Water, incidence: f64) -> Worst {
         }
     }
     worst
+}
+
+/// Other spectra, whose waves may spread each in its own way, and a closed slope budget.
+#[test]
+fn other_spectra_and_budgets() {
+    let other = |w, footprint, change: fn(&mut Parameters)| {
+        water(w, |p| {
+            *p = Parameters { ..sea(w, footprint, 8).parameters };
+            change(p);
+        })
+    };
+    for water in [
+        other(24.0, 0.15, |p| p.spectrum = SpectrumModel::Elfouhaily),
+        other(8.0, 0.1, |p| (p.spectrum, p.fetch) = (SpectrumModel::Jonswap, 2e3)),
+        other(4.0, 0.15, |p| p.slope_budget = SlopeBudget::Closed),
+        other(40.0, 0.05, |p| {
+            (p.spectrum, p.slope_budget) = (SpectrumModel::Elfouhaily, SlopeBudget::Closed);
+        }),
+    ] {
+        let worst = compare_without_obscuration(&water, 40.0, 60_000);
+        assert!(worst.deviation < 1.0, "{}: {}", water, worst.text);
+    }
 }
 
 fn campaign(seas: impl Iterator<Item = (f64, f64, u32, f64)>, compare: impl Fn(f64, f64, u32, f64) -> Worst) {

@@ -2,7 +2,7 @@
 
 use prob_water::batch::{Columns, Coordinates, Rows, SampleColumns, Sources};
 use prob_water::simd::SimdLevel;
-use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, Wind};
+use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, SlopeStatistics, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::f64::consts::TAU;
 
@@ -72,6 +72,7 @@ fn seas() -> Vec<Parameters> {
                 Parameters { gram_charlier: false, ior: Some(4.0), ..oblique },
                 // Water absorbs there.
                 Parameters { wavelength: 12.5, fresnel: Fresnel::Exact, ..oblique },
+                Parameters { slopes: SlopeStatistics::BreonHenriot, ..oblique },
             ]);
         }
     }

@@ -15,6 +15,7 @@ mod places;
 mod properties;
 mod reference;
 mod sampling;
+mod slope_budget;
 mod surfaces;
 mod threads;
 mod wave_sums;

@@ -6,7 +6,7 @@ use prob_water::mesh::Vertices;
 use prob_water::spectrum::spreading;
 use prob_water::surface::Waves;
 use prob_water::surface::share;
-use prob_water::{Draws, Ensemble, Layout, Mesh, RealisedSurface, Surface, Water, slopes};
+use prob_water::{Draws, Ensemble, Layout, Mesh, Parameters, RealisedSurface, SlopeBudget, Surface, Water};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -171,11 +171,11 @@ fn stratified_draws_carry_the_spectrum() {
 
 /// Rows of (distance, variance of the interpolated normals' slopes, upwind and crosswind) averaged over seeds: at places
 /// drawn evenly over the ring of each distance, normals are interpolated as a renderer does.
-fn shown(w: f64, distances: &[f64], seeds: u64) -> Vec<[f64; 2]> {
+fn shown(sea: impl Fn(u64) -> Water + Sync, distances: &[f64], seeds: u64) -> Vec<[f64; 2]> {
     let sums: Vec<_> = (0..seeds)
         .into_par_iter()
         .map(|seed| {
-            let mesh = Mesh::new(&sea(w, 0.15, seed), &small(2e4, 50_000)).unwrap();
+            let mesh = Mesh::new(&sea(seed), &small(2e4, 50_000)).unwrap();
             let (level, vertices) = (mesh.level(), mesh.vertices(0.0));
             let (sin, cos) = 40f64.to_radians().sin_cos();
             let mut rows = vec![[0.0; 3]; distances.len()];
@@ -215,15 +215,21 @@ fn shown(w: f64, distances: &[f64], seeds: u64) -> Vec<[f64; 2]> {
 #[test]
 fn variance_is_complete_at_every_distance() {
     let distances = [2.0, 10.0, 50.0, 300.0, 2e3, 1e4];
-    for w in [4.0, 24.0] {
-        let water = sea(w, 0.15, 0);
+    for (w, slope_budget) in
+        [(4.0, SlopeBudget::Report), (24.0, SlopeBudget::Report), (8.0, SlopeBudget::Closed)]
+    {
+        let sea = |seed| Parameters { slope_budget, ..sea(w, 0.15, seed).parameters }.configure().unwrap();
+        let water = sea(0);
         let mesh = Mesh::new(&water, &small(2e4, 50_000)).unwrap();
-        for (r, found) in distances.iter().zip(shown(w, &distances, 16)) {
+        for (r, found) in distances.iter().zip(shown(sea, &distances, 16)) {
             let at = (CELLS * mesh.grid.growth * r).max(0.15);
-            let facets = slopes::variances(&water.wind, at);
+            let facets = water.facet_variances(at);
             let [_, u, c] = integrals(&water.fading_waves(), at);
-            let more = slopes::variances(&water.wind, mesh.facets(at));
-            let expected = [u + facets[0], c + facets[1]];
+            let more = water.facet_variances(mesh.facets(at));
+            let expected = match slope_budget {
+                SlopeBudget::Report => [u + facets[0], c + facets[1]],
+                SlopeBudget::Closed => water.parameters.slopes.total(&water.wind),
+            };
             let lost = [1.0 - (found[0] + more[0]) / expected[0], 1.0 - (found[1] + more[1]) / expected[1]];
             let worst = worse(lost[0].abs(), lost[1].abs());
             assert!(worst < 0.05, "w* {w} r {r} D {at}: lost {lost:?} of {expected:?}");

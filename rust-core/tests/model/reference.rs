@@ -3,8 +3,8 @@
 use crate::common::rows;
 use prob_water::spectrum::Spectrum;
 use prob_water::{
-    Fresnel, Lobe, Parameters, Readings, RealisedSurface, Salinity, SlopeMeasure, Surface, Wind, slopes,
-    whitecap, wind,
+    Fresnel, Lobe, Parameters, Readings, RealisedSurface, Salinity, SlopeMeasure, SlopeStatistics,
+    SpectrumModel, Surface, Wind, slopes, whitecap, wind,
 };
 
 #[track_caller]
@@ -42,7 +42,7 @@ fn wind_profile() {
 fn slope_variances() {
     for r in rows("slope_variance") {
         let wind = Wind::FrictionVelocity(r[0]).profile().unwrap();
-        let found = slopes::variances(&wind, r[1]);
+        let found = SlopeStatistics::CoxMunk.variances(&wind, r[1]);
         close(found[0], r[2].max(slopes::VARIANCE_FLOOR));
         close(found[1], r[3].max(slopes::VARIANCE_FLOOR));
     }
@@ -62,7 +62,7 @@ fn spectra() {
     for r in rows("spectrum") {
         let wind = Wind::FrictionVelocity(r[0]).profile().unwrap();
         let water = if r[1] == 1.0 { Salinity::Fresh } else { Salinity::Ocean };
-        let s = Spectrum::new(&wind, water, r[2], r[3]);
+        let s = Spectrum::new(SpectrumModel::Report, &wind, water, r[2], r[3]);
         for (found, expected) in
             [s.frequency(r[4]), s.density(r[4]), s.k0, s.k1, s.k2, s.k_min].into_iter().zip(&r[5..])
         {

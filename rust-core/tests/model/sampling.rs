@@ -1,7 +1,7 @@
 //! Draws against their density, by integrals over both, and the bound on sample weights.
 
 use crate::common::{HURRICANES, UP, WINDS, direction, dot, integrate, water, worse};
-use prob_water::{Lobe, SlopeMeasure};
+use prob_water::{Lobe, SlopeMeasure, SlopeStatistics};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
 /// Expectations of several functions under `sample` against their integrals with `pdf`.
@@ -10,12 +10,14 @@ fn draws_follow_the_density_about_any_normal() {
     let mut rng = StdRng::seed_from_u64(3);
     let normals = [UP, direction(8.0, 40.0), direction(25.0, 200.0)];
     let mut compared = 0;
-    for w in [0.0, 2.0, 8.0, 56.0] {
+    let (munk, henriot) = (SlopeStatistics::CoxMunk, SlopeStatistics::BreonHenriot);
+    for (w, statistics) in [(0.0, munk), (2.0, munk), (8.0, munk), (24.0, henriot), (56.0, munk)] {
         for slope_measure in [SlopeMeasure::Angle, SlopeMeasure::Slope] {
             for n in normals {
                 for theta in [0.0, 50.0, 80.0, 88.0] {
                     let i = direction(theta, 15.0);
                     let water = water(w, |p| {
+                        p.slopes = statistics;
                         p.slope_measure = slope_measure;
                         p.wind_direction = 70.0;
                         p.whitecaps = w == 56.0;
@@ -133,6 +135,31 @@ fn weights_are_bounded() {
                 // Near the horizon water reflects nearly everything: no cell's largest weight is much below 1.
                 assert!(worst > 0.9, "{worst}");
             }
+        }
+    }
+}
+
+/// The same of Breon and Henriot's slopes, whose tails are longer upwind.
+#[test]
+fn weights_of_breon_and_henriots_slopes_are_bounded() {
+    let mut rng = StdRng::seed_from_u64(10);
+    for w in [0.0, 2.0, 8.0, 24.0, 56.0] {
+        for (slope_measure, bound) in [(SlopeMeasure::Slope, 2.1), (SlopeMeasure::Angle, 3.0)] {
+            let lobe = water(w, |p| {
+                p.slopes = SlopeStatistics::BreonHenriot;
+                p.slope_measure = slope_measure;
+            })
+            .local_lobe();
+            let mut worst = 0.0f64;
+            for _ in 0..60_000 {
+                let i = direction(90.0 - 90.0 * rng.random::<f64>().powi(3), 360.0 * rng.random::<f64>());
+                let s = lobe.sample(i, UP, [rng.random(), rng.random(), rng.random()]);
+                if s.pdf > 0.0 {
+                    worst = worse(worst, s.f * s.direction[2] / s.pdf);
+                }
+            }
+            println!("w* {w} {slope_measure:?}: {worst:.2}");
+            assert!(worst > 0.9 && worst < bound, "{worst} at w* {w} {slope_measure:?}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::common::water;
 use prob_water::spectrum::spreading;
 use prob_water::surface::{Draws, InstanceRng, Waves};
-use prob_water::{Surface, Water, slopes};
+use prob_water::{Surface, Water};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -91,7 +91,7 @@ fn variance_is_shared_between_waves_and_facets() {
         for footprint in [0.05, 0.1, 0.15, 0.2, 0.3, 0.5] {
             let water = sea(w, footprint, 5);
             let [_, u, c] = integrals(&water.waves());
-            let all = slopes::variances(&water.wind, f64::INFINITY);
+            let all = water.parameters.slopes.total(&water.wind);
             shares.push((u + c + water.variances[0] + water.variances[1]) / (all[0] + all[1]));
         }
         assert!(shares.iter().all(|s| (1.0..1.25).contains(s)), "w* {w}: {shares:?}");

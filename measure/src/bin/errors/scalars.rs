@@ -1,10 +1,11 @@
 //! Stages that are functions of a few numbers: wind, slopes, reflectance, shadowing, whitecaps.
 
 use crate::Lines;
+use prob_water::SlopeStatistics;
 use prob_water::brdf::{Fresnel, Reflectance, fresnel::pure_water};
 use prob_water::real::{IERFC, IERFC_END};
 use prob_water::shadowing::cos_lambda;
-use prob_water::slopes::{GramCharlier, WIDTH, skewness, variances};
+use prob_water::slopes::{GramCharlier, WIDTH};
 use prob_water::wind::{friction_velocity, highest_wind_speed, wind_speed};
 use prob_water::{Real, Wind, whitecap};
 use serde_json::json;
@@ -34,13 +35,14 @@ fn wind(lines: &mut Lines) {
 fn slopes(lines: &mut Lines) {
     let (w, footprint) = (lines.wind(), lines.footprint());
     let profile = Wind::FrictionVelocity(w).profile().expect("within Table 1");
-    lines.row("variances", json!([w, footprint]), json!({"float64": variances(&profile, footprint)}));
-    let [c21, c03] = skewness(&profile);
+    let munk = SlopeStatistics::CoxMunk;
+    lines.row("variances", json!([w, footprint]), json!({"float64": munk.variances(&profile, footprint)}));
+    let [c21, c03] = munk.skewness(&profile);
     lines.row("skewness", json!([w]), json!({"float64": [c21, c03]}));
 
     let (r, psi) = (lines.uniform(0.0, REACH).sqrt(), lines.uniform(0.0, TAU));
     let x = [c21, c03, r * psi.cos(), r * psi.sin()];
-    let polynomial = |[c21, c03, ..]: [f64; 4]| GramCharlier::new([c21, c03], false);
+    let polynomial = |[c21, c03, ..]: [f64; 4]| GramCharlier::new([c21, c03], munk.kurtosis(), false);
     let p = polynomial(x).eval(-x[2] / WIDTH, x[3] / WIDTH);
     lines.row("gram_charlier", json!(x), json!({"float64": [p]}));
     // In float32, of tilts that are float32 numbers in widths.

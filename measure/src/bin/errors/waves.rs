@@ -5,7 +5,9 @@ use glam::DVec3;
 use prob_water::spectrum::Spectrum;
 use prob_water::surface::SurfaceRay;
 use prob_water::surface::{Component, Draws, InstanceRng};
-use prob_water::{Layout, Mesh, Parameters, RealisedSurface, Salinity, Surface, Water, WaveSums, Wind};
+use prob_water::{
+    Layout, Mesh, Parameters, RealisedSurface, Salinity, SpectrumModel, Surface, Water, WaveSums, Wind,
+};
 use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
 
@@ -52,7 +54,7 @@ fn spectrum(lines: &mut Lines) {
     let fetch = if lines.one(&[true, false]) { f64::INFINITY } else { lines.decades(1e3, 1e5) };
     let (water, density) = lines.one(&[(Salinity::Ocean, 1.025), (Salinity::Fresh, 1.0)]);
     let profile = Wind::FrictionVelocity(w).profile().expect("within Table 1");
-    let s = Spectrum::new(&profile, water, depth, fetch);
+    let s = Spectrum::new(SpectrumModel::Report, &profile, water, depth, fetch);
     let footprint = lines.footprint();
     let k = lines.decades(s.k_min, s.k2);
     let k_max = s.k_max(footprint).expect("there are waves from 0.5 cm/s");
