@@ -58,7 +58,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
         Some(given) => given.copied().collect(),
         None => all(&spectrum, *matches.get_one::<u32>("points").expect("has a default"))?,
     };
-    let k_max = spectrum.k_max(water.footprint).unwrap_or(f64::NAN);
+    let k_max = spectrum.k_max(water.footprint, water.parameters.readings).unwrap_or(f64::NAN);
     let mut out = Table::new(matches, COLUMNS)?;
     for k in wave_numbers {
         out.row(

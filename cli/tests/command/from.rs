@@ -3,7 +3,7 @@
 use crate::{refuse, succeed};
 use exr::prelude::*;
 use prob_water::{
-    Average, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeMeasure, Surface, Wind,
+    Average, Fresnel, Hiding, OffPlaneModel, Parameters, Readings, Salinity, SlopeMeasure, Surface, Wind,
 };
 use std::fs;
 use std::path::Path;
@@ -64,9 +64,10 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         water: Salinity::Fresh,
         fresnel: Fresnel::Exact,
         slope_measure: SlopeMeasure::Slope,
-        readings: Readings::AsPrinted,
+        readings: Readings::AS_PRINTED,
         whitecaps: false,
         shadowing: false,
+        hiding: Hiding::Once,
         gram_charlier: false,
     }
 }

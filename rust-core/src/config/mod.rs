@@ -5,6 +5,5 @@ pub(crate) mod parameters;
 pub mod vocabulary;
 
 pub use parameters::{
-    Average, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters, Readings, Surface,
-    Water,
+    Average, Hiding, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters, Surface, Water,
 };

@@ -1,12 +1,13 @@
 //! The one vocabulary of parameters: scene files, flags, C, Python and Rust all use these names.
 
 use super::parameters::{
-    Average, DRAWN, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters, Readings,
-    SEEDS, Surface, Water,
+    Average, DRAWN, Hiding, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters, SEEDS,
+    Surface, Water,
 };
 use crate::brdf::fresnel::WAVELENGTHS;
 use crate::brdf::{Fresnel, SlopeMeasure};
 use crate::error::{Error, refuse};
+
 use crate::sea::{Salinity, Wind, wind};
 
 /// A parameter: what documentation and help show of it, and how it is read and written.
@@ -109,7 +110,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 25] = [
+pub const ENTRIES: [Entry; 26] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -345,11 +346,19 @@ pub const ENTRIES: [Entry; 25] = [
         name: "readings",
         unit: "",
         default: "corrected",
-        allowed: "corrected, as_printed",
-        help: "`corrected` or `as_printed` equations, see docs/model.md",
+        allowed: "corrected, 22, 43-45, 56, 62, 65, 66, 70, 71-73, 78, 82, 88, as_printed",
+        help: "equations taken as printed: none (`corrected`), the whole print (`as_printed`), or a list, such as `56, 71-73`",
         surfaces: ALL,
         kind: Kind::Word,
-        access: field!(word, readings, READINGS),
+        access: Access {
+            holds: |_| true,
+            get: |p| Some(Value::Text(p.readings.to_string())),
+            // An equation by itself may come as a number.
+            set: |b, name, value| match value {
+                Value::Flag(_) => Err(wrong_type(name, value, "a word")),
+                _ => value.to_string().parse().map(|readings| b.parameters.readings = readings),
+            },
+        },
     },
     Entry {
         name: "whitecaps",
@@ -370,6 +379,17 @@ pub const ENTRIES: [Entry; 25] = [
         surfaces: ALL,
         kind: Kind::Flag,
         access: field!(flag, shadowing),
+    },
+    Entry {
+        name: "hiding",
+        unit: "",
+        default: "report",
+        allowed: "report, once",
+        help: "slopes in the shadowing function: the whole sea's, as the `report`, or the facets' own, so \
+               that what longer waves hide counts `once`; the same for an infinite footprint",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, hiding, HIDINGS),
     },
     Entry {
         name: "gram_charlier",
@@ -393,7 +413,7 @@ pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Re
 pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
 
 /// The parameters that do not describe the sea, but how its surface reflects.
-pub const OPTICS: [&str; 10] = [
+pub const OPTICS: [&str; 11] = [
     "average",
     "across",
     "wavelength",
@@ -403,6 +423,7 @@ pub const OPTICS: [&str; 10] = [
     "slope_measure",
     "readings",
     "shadowing",
+    "hiding",
     "gram_charlier",
 ];
 
@@ -479,11 +500,10 @@ const SURFACES: [(&str, Surface); 4] = [
 const ACROSS: [(&str, OffPlaneModel); 2] =
     [("report", OffPlaneModel::Report), ("slopes", OffPlaneModel::Slopes)];
 const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Average::Report)];
+const HIDINGS: [(&str, Hiding); 2] = [("report", Hiding::Report), ("once", Hiding::Once)];
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
-const READINGS: [(&str, Readings); 2] =
-    [("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)];
 
 fn word<C: PartialEq>(choice: &C, choices: &[(&str, C)]) -> Option<Value> {
     choices.iter().find(|(_, c)| c == choice).map(|(name, _)| Value::Text((*name).into()))
@@ -627,6 +647,7 @@ impl Builder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::readings::Readings;
 
     #[test]
     fn what_is_set_can_be_read() {
@@ -652,9 +673,10 @@ mod tests {
             ("water", Value::Text("fresh".into())),
             ("fresnel", Value::Text("exact".into())),
             ("slope_measure", Value::Text("slope".into())),
-            ("readings", Value::Text("as_printed".into())),
+            ("readings", Value::Text("56, 71-73".into())),
             ("whitecaps", Value::Flag(false)),
             ("shadowing", Value::Flag(false)),
+            ("hiding", Value::Text("once".into())),
             ("gram_charlier", Value::Flag(false)),
         ];
         assert_eq!(values.len(), ENTRIES.len());
@@ -711,9 +733,10 @@ mod tests {
                 water: Salinity::Fresh,
                 fresnel: Fresnel::Exact,
                 slope_measure: SlopeMeasure::Slope,
-                readings: Readings::AsPrinted,
+                readings: Readings::EQ_66 | Readings::EQ_22,
                 whitecaps: false,
                 shadowing: false,
+                hiding: Hiding::Once,
                 gram_charlier: false,
             };
             let text = given.configure().unwrap().to_string();

@@ -272,7 +272,7 @@ pub(crate) struct Slice {
 }
 
 /// Parameters that a table has only one value of.
-pub(crate) const SHARED: [&str; 9] = [
+pub(crate) const SHARED: [&str; 10] = [
     "components",
     "depth",
     "fetch",
@@ -281,6 +281,7 @@ pub(crate) const SHARED: [&str; 9] = [
     "readings",
     "whitecaps",
     "shadowing",
+    "hiding",
     "gram_charlier",
 ];
 

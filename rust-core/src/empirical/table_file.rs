@@ -136,6 +136,9 @@ fn add<W: Write + Seek, T: npyz::AutoSerialize>(
     array.finish()
 }
 
+/// Parameters that are younger than tables which do not tell them: these have their defaults.
+const LATER: [&str; 1] = ["hiding"];
+
 type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 fn parse(bytes: &[u8]) -> Result<Table, String> {
@@ -152,7 +155,8 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
         return Err(format!("its format_version is {}, expected {FORMAT_VERSION}", told("format_version")));
     }
     let parameters = told("parameters");
-    if let Some(missing) = SHARED.iter().find(|name| parameters.get(name).is_none()) {
+    let untold = |name: &&&str| !LATER.contains(name) && parameters.get(name).is_none();
+    if let Some(missing) = SHARED.iter().find(untold) {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {

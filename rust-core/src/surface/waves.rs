@@ -99,7 +99,7 @@ impl Water {
         let spectrum = Spectrum::new(&self.wind, p.water, p.depth, p.fetch);
         Waves {
             spectrum,
-            log_range: spectrum.k_max(footprint).map(|k_max| [spectrum.k_min.ln(), k_max.ln()]),
+            log_range: spectrum.k_max(footprint, p.readings).map(|k_max| [spectrum.k_min.ln(), k_max.ln()]),
             components: p.components as usize,
             wind_azimuth: p.wind_direction.to_radians(),
         }
