@@ -32,7 +32,7 @@
 //! | [`empirical`] | the empirical model and its tables | 80-91 |
 //! | [`api`] | many rows at once, and C | |
 //!
-//! [`Error`] stands above them all.
+//! [`Error`] and [`Readings`] stand above them all.
 //!
 //! `docs/model.md` tells where the report's print is defective, how this crate reads it, and
 //! which test shows it.
@@ -43,6 +43,7 @@ pub mod config;
 pub mod empirical;
 mod error;
 pub mod numeric;
+mod readings;
 pub mod render;
 pub mod sea;
 pub mod simd;
@@ -53,11 +54,12 @@ pub use api::batch;
 pub use api::kernels::{self, Kernels};
 pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, SlopeStatistics, fresnel, sampling, shadowing, slopes};
 pub use config::{
-    Average, FootprintMeasure, OffPlaneModel, Parameters, Readings, SlopeBudget, Surface, Water, vocabulary,
+    Average, FootprintMeasure, Hiding, OffPlaneModel, Parameters, SlopeBudget, Surface, Water, vocabulary,
 };
 pub use empirical::{EmpiricalLobe, Estimate, FineGrid, Gridded, Table, planes, table, table_file};
 pub use error::{Error, Warning};
 pub use numeric::{Real, Scalar, real};
+pub use readings::Readings;
 pub use render::{EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, ensemble_lobe, grid, mesh};
 pub use sea::{Salinity, SpectrumModel, Wind, WindProfile, spectrum, whitecap, wind};
 pub use statistics::{Aim, Engagement, Ensemble, Exact, Proposal, Statistics, WhitecapMode, ensemble};

@@ -62,7 +62,8 @@ def is_inverse_to_wind(tables: Tables) -> Verdict:
 # ---- Figure 9: the secondary peak
 
 STORM = 56.0
-READINGS = ("corrected", "as_printed")
+#: The corrected equations, and the unsigned angles as printed, with their names.
+READINGS = {"corrected": "corrected", "71-73": "Eqs. 71-73 as printed"}
 #: Contrasts of f at θi = 30 between angles of reflection, by instance: name and weights.
 CONTRASTS = {"rise from 67.5 to 80": {67.5: -1, 80.0: 1},
              "fall from 80 to 87.5": {80.0: 1, 87.5: -1},
@@ -98,7 +99,7 @@ def draw_storm(tables: Tables, page: Canvas) -> None:
     rows = select(tables["storm"], friction_velocity=STORM, plane="in")
     for reading, colour in zip(READINGS, ("black", "tab:orange"), strict=True):
         curve = select(rows, readings=reading, incidence=30.0)
-        plot.line(left, curve, color=colour, label=reading.replace("_", " "))
+        plot.line(left, curve, color=colour, label=READINGS[reading])
         incidences = np.unique(rows["incidence"])
         for incidence, shade in zip(incidences, plot.shades(len(incidences)), strict=True):
             curve = select(rows, readings=reading, incidence=incidence)
@@ -106,7 +107,7 @@ def draw_storm(tables: Tables, page: Canvas) -> None:
                       label=f"θi = {incidence:g}°" if reading == "corrected" else None)
     left.axvline(80, color="0.6", linewidth=1, linestyle="--")
     left.set(title="(a) in-plane, w* = 56 cm/s, θi = 30°", ylim=(0, None))
-    right.set(title="(b) in-plane, w* = 56 cm/s; dotted: as printed", yscale="log", ylim=(1e-4, 5))
+    right.set(title="(b) in-plane, w* = 56 cm/s; dotted: Eqs. 71-73 as printed", yscale="log", ylim=(1e-4, 5))
     left.legend(loc="upper left")
     look.legend(page, right)
 
@@ -126,13 +127,13 @@ def secondary_peak(tables: Tables, reading: str) -> Verdict:
     top = peak(outer)
     holds = margin > MARGIN and fall > MARGIN and abs(top.angle - 80) <= 2.5
     shape = f"highest beyond 67.5 degrees at {top.angle:g}: {top.value:.4f} 1/sr"
-    return Verdict(bool(holds), f"{reading.replace('_', ' ')}, θi = 30: f(80) - f(67.5) = {rise:.5f} ± "
+    return Verdict(bool(holds), f"{READINGS[reading]}, θi = 30: f(80) - f(67.5) = {rise:.5f} ± "
                    f"{error:.5f} 1/sr ({margin:+.0f} standard errors); {shape}")
 
 
 def secondary_peak_as_printed(tables: Tables) -> Verdict:
     """The printed, unsigned angles."""
-    return secondary_peak(tables, "as_printed")
+    return secondary_peak(tables, "71-73")
 
 
 def secondary_peak_corrected(tables: Tables) -> Verdict:
@@ -162,7 +163,7 @@ def more_pronounced(tables: Tables, key: str, **wanted: float) -> Verdict:
         ratios = np.array([far[0] / near[0] for far, near in pairs])
         errors = ratios * np.array([far[1] / far[0] + near[1] / near[0] for far, near in pairs])
         margins.append(steps(ratios, errors).min())
-        parts.append(f"{reading.replace('_', ' ')} {listed(ratios)}")
+        parts.append(f"{READINGS[reading]} {listed(ratios)}")
     margin = least(margins)
     return Verdict(margin > MARGIN, f"f(80) over f(θi) at {listed(values)}: {'; '.join(parts)}; every step rises "
                    f"by at least {margin:.0f} standard errors")
@@ -410,9 +411,9 @@ FIGURES = [
          Claim("and is greater than an order of magnitude over the range.", falls_by_more_than_ten)]),
     Figure(
         "figure-09", "Figure 9: the secondary peak at the maximum wind",
-        "w* = 56 cm/s, otherwise the base scenario, with the corrected equations and as printed.",
+        "w* = 56 cm/s, otherwise the base scenario, with the corrected equations and with Eqs. 71-73 as printed.",
         collect_storm, draw_storm,
-        [Claim("A “secondary” BRDF peak occurs at angles of reflection near 80° [as printed].",
+        [Claim("A “secondary” BRDF peak occurs at angles of reflection near 80° [Eqs. 71-73 as printed].",
                secondary_peak_as_printed),
          Claim("A “secondary” BRDF peak occurs at angles of reflection near 80° [corrected].",
                secondary_peak_corrected, expected=False),

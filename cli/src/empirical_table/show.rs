@@ -111,7 +111,8 @@ pub fn run(matches: &ArgMatches) -> Outcome {
 fn slice(matches: &ArgMatches, table: &Table, water: &Water, incidence: f64) -> Outcome {
     let lobe = EmpiricalLobe::new(water, table)?;
     let (sin, cos) = incidence.to_radians().sin_cos();
-    let planes = Planes::new([-sin, 0.0, cos], water.parameters.wind_direction.to_radians());
+    let planes = Planes::new([-sin, 0.0, cos], water.parameters.wind_direction.to_radians())
+        .with_readings(water.parameters.readings);
     let across = matches.get_flag("across_plane");
     let angles = match matches.get_one::<Axis>("angles") {
         Some(given) => given.values.clone(),

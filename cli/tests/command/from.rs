@@ -3,7 +3,7 @@
 use crate::{refuse, succeed};
 use exr::prelude::*;
 use prob_water::{
-    Average, FootprintMeasure, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeBudget,
+    Average, FootprintMeasure, Fresnel, Hiding, OffPlaneModel, Parameters, Readings, Salinity, SlopeBudget,
     SlopeMeasure, SlopeStatistics, SpectrumModel, Surface, Wind,
 };
 use std::fs;
@@ -71,9 +71,10 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         salinity: Some(0.1),
         fresnel: Fresnel::Exact,
         slope_measure: SlopeMeasure::Slope,
-        readings: Readings::AsPrinted,
+        readings: Readings::AS_PRINTED,
         whitecaps: false,
         shadowing: false,
+        hiding: Hiding::Once,
         gram_charlier: false,
     }
 }

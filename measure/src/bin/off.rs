@@ -81,11 +81,11 @@ fn main() {
         "gram_charlier" => parameters.gram_charlier = on,
         // These are off unless asked for.
         "exact_fresnel" if on => parameters.fresnel = Fresnel::Exact,
-        "as_printed" if on => parameters.readings = Readings::AsPrinted,
+        "unsigned_angles" if on => parameters.readings = Readings::EQ_71_73,
         "tilt_angles" if !on => parameters.slope_measure = SlopeMeasure::Slope,
         "masking_bound" => parameters.wind = Wind::FrictionVelocity(4.0),
         "oblique_wind" if on => parameters.wind_direction = 37.0,
-        "exact_fresnel" | "as_printed" | "tilt_angles" | "oblique_wind" => {}
+        "exact_fresnel" | "unsigned_angles" | "tilt_angles" | "oblique_wind" => {}
         _ => panic!("{case}"),
     }
     let mut lobe: Lobe<f32> = parameters.configure().expect("the parameters are valid").local_lobe().cast();

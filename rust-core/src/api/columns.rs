@@ -314,7 +314,8 @@ fn check(column: &'static str, [x, y, z]: Coordinates, normals: bool) -> Result<
 mod tests {
     use super::*;
     use crate::brdf::SlopeMeasure;
-    use crate::config::{Parameters, Readings};
+    use crate::config::Parameters;
+    use crate::readings::Readings;
 
     /// In the vectors of every kind a coordinate that is not a number gives none, wherever the others lie, and leaves the
     /// neighbouring lanes alone.
@@ -324,7 +325,7 @@ mod tests {
         let seas = [
             defaults,
             Parameters { slope_measure: SlopeMeasure::Slope, wind_direction: 30.0, ..defaults },
-            Parameters { readings: Readings::AsPrinted, gram_charlier: false, shadowing: false, ..defaults },
+            Parameters { readings: Readings::AS_PRINTED, gram_charlier: false, shadowing: false, ..defaults },
         ];
         let (up, below) = ([0.0, 0.6, 0.8], [0.0, 0.6, -0.8]);
         for sea in seas {

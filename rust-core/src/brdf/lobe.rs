@@ -5,10 +5,11 @@
 //! number gives none.
 
 use super::fresnel::Reflectance;
-use super::shadowing::cos_lambda;
+use super::shadowing::{cos_lambda, printed_excess};
 use super::slopes::{GramCharlier, WIDTH};
 use crate::numeric::real::{Extended, dot};
 use crate::numeric::{Real, Scalar, Vec3};
+use crate::readings::Readings;
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 
@@ -153,6 +154,8 @@ pub struct Facets<T: Real> {
     pub correction: GramCharlier<T::Density>,
     /// sigma of Eq. 64.
     pub sigma_shadow: T,
+    /// Shadowing has the facets' own slopes, along each direction, in place of Eq. 64's.
+    pub own_shadows: bool,
     /// rho of Eqs. 62-63.
     pub reflectance: Reflectance<T::Density>,
     /// The density is Gaussian in slopes, not in tilt angles.
@@ -161,8 +164,8 @@ pub struct Facets<T: Real> {
     pub gram_charlier: bool,
     /// Eq. 67 is applied.
     pub shadowing: bool,
-    /// Unsigned angles (71-73) and the c21 term (78) as printed.
-    pub as_printed: bool,
+    /// The equations that are taken as printed.
+    pub readings: Readings,
 }
 
 /// What the two directions and the normal fix, however the water is.
@@ -253,6 +256,11 @@ impl<T: Real> Facets<T> {
         let slope = [u * inv_n, c * inv_n];
         let tan2 = T::to_density(slope[0].mul_add(slope[0], slope[1] * slope[1]));
         let cos = [cosine::<T, E>(i, n), cosine::<T, E>(o, n)];
+        let mut tilt = [[xu, along_u], [xc, along_c]];
+        if self.readings.contains(Readings::EQ_70) {
+            let z = z.at_least(T::SMALL);
+            tilt = [[hu, z], [hc, z]];
+        }
         // N.V of the sum of both directions, without cancellation where both are small.
         let sum_n = Real::max(cos[0].to_density() + cos[1].to_density(), T::Density::SMALL);
         Geometry {
@@ -260,7 +268,7 @@ impl<T: Real> Facets<T> {
             cos_zeta,
             tan2,
             inv_cos2: length2 / (sum_n * sum_n),
-            tilt: [[xu, along_u], [xc, along_c]],
+            tilt,
             slope,
             local_i,
             tangential: [tangential_part(i, n), tangential_part(o, n)],
@@ -320,12 +328,12 @@ impl<T: Real> Facets<T> {
         let (zero, floor) = (T::Density::of(0.0), T::Density::of(STEEP_FLOOR));
         // Slopes have no end; the polynomial must not overflow.
         let [mut u, c] = if self.slope_measure { [u.clamp(MAX_TILT), c.clamp(MAX_TILT)] } else { [u, c] };
-        if self.as_printed {
+        if self.readings.contains(Readings::EQ_71_73) {
             u = E::select(zero.lt(u.to_density()), -u, u);
         }
         let gauss = E::gauss(u, c);
         let mut p = gauss * (inv_cos2 * inv_cos2);
-        if !self.slope_measure && !self.as_printed {
+        if !self.slope_measure && !self.readings.contains(Readings::EQ_71_73) {
             p = Real::min(p, Real::max(gauss * self.steep_gain.to_density(), floor));
         }
         if self.gram_charlier {
@@ -351,7 +359,7 @@ impl<T: Real> Facets<T> {
     fn projected_area<E>(&self, g: &Geometry<T, E>, rho: T) -> T {
         let cos = [T::max(g.cos[0], T::of(GRAZING)), T::max(g.cos[1], T::of(GRAZING))];
         let mut spreads = [T::of(0.0); 2];
-        if self.bounded {
+        if self.needs_spreads() {
             spreads = [self.spread_along(g.tangential[0]), self.spread_along(g.tangential[1])];
         }
         self.masked_area(rho, cos, spreads)
@@ -360,19 +368,49 @@ impl<T: Real> Facets<T> {
     /// `cos theta_i cos theta_r/G`, held to `rho/bound` times the larger of `(1 + Lambda) cos_i cos_r` of the two directions,
     /// Lambda by the facets' own slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
     /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1. It needs `spreads`, the
-    /// [`Facets::spread_along`] of both.
+    /// [`Facets::spread_along`] of both, and so do [`Facets::own_shadows`].
     #[inline(always)]
     pub(crate) fn masked_area(&self, rho: T, [ci, cr]: [T; 2], [spread_i, spread_o]: [T; 2]) -> T {
         let mut area = ci * cr;
         if self.shadowing {
-            area = cr.mul_add(cos_lambda(ci, self.sigma_shadow * sine(ci)), area);
-            area = ci.mul_add(cos_lambda(cr, self.sigma_shadow * sine(cr)), area);
+            let mut shadows = [spread_i, spread_o];
+            if !self.own_shadows {
+                shadows = [self.sigma_shadow * sine(ci), self.sigma_shadow * sine(cr)];
+            }
+            area = cr.mul_add(self.masked(ci, shadows[0]), area);
+            area = ci.mul_add(self.masked(cr, shadows[1]), area);
         }
         if self.bounded {
             let [visible_i, visible_o] = [ci + cos_lambda(ci, spread_i), cr + cos_lambda(cr, spread_o)];
             area = T::max(area, rho / self.bound * T::max(visible_i * cr, visible_o * ci));
         }
         area
+    }
+
+    /// `cos theta F` (Eqs. 64-66) of an angle to the normal by its cosine and sigma times its sine.
+    #[inline(always)]
+    pub(crate) fn masked(&self, cos: T, mut sigma_sin: T) -> T {
+        if !self.printed_shadowing() {
+            return cos_lambda(cos, sigma_sin);
+        }
+        if self.readings.contains(Readings::EQ_65) {
+            // sqrt(1 - cos) for the sine.
+            sigma_sin = sigma_sin * (T::of(1.0) + cos).rsqrt();
+        }
+        let read = cos_lambda(cos, sigma_sin);
+        if self.readings.contains(Readings::EQ_66) { read + printed_excess(cos, sigma_sin) } else { read }
+    }
+
+    /// Whether the [`Facets::spread_along`] of both directions take part.
+    #[inline(always)]
+    pub(crate) fn needs_spreads(&self) -> bool {
+        self.bounded || self.own_shadows
+    }
+
+    /// Whether Eqs. 65 or 66 are taken as printed.
+    #[inline(always)]
+    pub(crate) fn printed_shadowing(&self) -> bool {
+        self.readings.intersects(Readings::EQ_65 | Readings::EQ_66)
     }
 
     /// sqrt 2 times the facets' standard deviation along a direction, times its sine.
@@ -480,11 +518,12 @@ impl<S: Scalar> Lobe<S> {
                 wind: f.wind.cast(),
                 correction: f.correction.cast(),
                 sigma_shadow: of(f.sigma_shadow),
+                own_shadows: f.own_shadows,
                 reflectance: f.reflectance.cast(),
                 slope_measure: f.slope_measure,
                 gram_charlier: f.gram_charlier,
                 shadowing: f.shadowing,
-                as_printed: f.as_printed,
+                readings: f.readings,
             },
             whitecap_fraction: of(self.whitecap_fraction),
             smooth_fraction: of(self.smooth_fraction),

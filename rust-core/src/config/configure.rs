@@ -1,12 +1,13 @@
 //! From parameters to a sea: everything is checked once and turned into coefficients.
 
-use super::parameters::{Parameters, Readings, Water};
+use super::parameters::{Hiding, Parameters, Water};
 use super::slope_split::SlopeSplit;
 use super::vocabulary::check;
 use crate::brdf::lobe::steep_gain;
 use crate::brdf::slopes::GramCharlier;
 use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing};
 use crate::error::{Error, refuse};
+use crate::readings::Readings;
 use crate::sea::{Spectrum, SpectrumModel, WindProfile, whitecap};
 
 impl Parameters {
@@ -44,7 +45,7 @@ impl Parameters {
         }
         let [ior, extinction] = self.index()?;
         let spectrum = Spectrum::new(self.spectrum, &wind, self.water, self.depth, self.fetch);
-        let slopes = SlopeSplit::new(self.slope_budget, &wind, spectrum, self.slopes);
+        let slopes = SlopeSplit::new(self.slope_budget, &wind, spectrum, self.slopes, self.readings);
         let variances = slopes.facets(footprint);
         let whitecap_fraction = whitecap::fraction(wind.w10);
         Ok(Water {
@@ -74,15 +75,12 @@ impl Parameters {
             (Some(ior), _) => ior,
             (None, None) => pure + fresnel::salt(self.wavelength, salinity),
             (None, Some(_)) if !(fresnel::QUAN_FRY[0]..=fresnel::QUAN_FRY[1]).contains(&self.wavelength) => {
-                return Err(Error::OutOfRange {
-                    parameter: "wavelength",
-                    value: self.wavelength.to_string(),
-                    allowed: "0.4 to 0.7 micrometres with a temperature (Quan and Fry)".into(),
-                });
+                let allowed = "0.4 to 0.7 micrometres with a temperature (Quan and Fry)";
+                return refuse("wavelength", self.wavelength, allowed);
             }
             (None, Some(temperature)) => fresnel::quan_fry(self.wavelength, temperature, salinity),
         };
-        let transparent = self.ior.is_some() || self.readings == Readings::AsPrinted;
+        let transparent = self.ior.is_some() || self.readings.contains(Readings::EQ_62);
         let extinction = self.extinction.unwrap_or(if transparent { 0.0 } else { absorption });
         Ok([ior, fresnel::relevant_extinction(ior, extinction)])
     }
@@ -90,8 +88,7 @@ impl Parameters {
     /// The facets of a wind, an index and slope variances.
     pub(crate) fn facets(&self, wind: &WindProfile, index: [f64; 2], variances: [f64; 2]) -> Facets<f64> {
         let [sigma_u, sigma_c] = variances.map(f64::sqrt);
-        let as_printed = self.readings == Readings::AsPrinted;
-        let eq_56 = if as_printed { std::f64::consts::FRAC_PI_4 } else { 0.25 };
+        let eq_56 = if self.readings.contains(Readings::EQ_56) { std::f64::consts::FRAC_PI_4 } else { 0.25 };
         let slope_measure = self.slope_measure == SlopeMeasure::Slope;
         let mut facets = Facets {
             sigma_u,
@@ -106,18 +103,25 @@ impl Parameters {
             proposal: [sigma_u, sigma_c],
             bounded: false,
             wind: WindAxes::new(self.wind_direction),
-            correction: GramCharlier::new(self.slopes.skewness(wind), self.slopes.kurtosis(), as_printed),
+            correction: GramCharlier::new(
+                self.slopes.skewness(wind),
+                self.slopes.kurtosis(),
+                self.readings.contains(Readings::EQ_78),
+            ),
             sigma_shadow: shadowing::sigma(wind.w10),
+            own_shadows: self.hiding == Hiding::Once && self.footprint().is_finite(),
             reflectance: Reflectance::new(index, self.fresnel),
             slope_measure,
             gram_charlier: self.gram_charlier,
             shadowing: self.shadowing,
-            as_printed,
+            readings: self.readings,
         };
         facets.set_sigmas([sigma_u, sigma_c], eq_56 / std::f64::consts::TAU);
         let stretch = facets.proposal_stretch();
         facets.proposal = facets.proposal.map(|sigma| sigma * stretch);
-        facets.bounded = self.shadowing && !as_printed && facets.needs_bound();
+        // The bound is one of the corrected shadowing. That of the facets' own slopes needs it wherever angles gain.
+        let needs_bound = facets.own_shadows || facets.needs_bound();
+        facets.bounded = self.shadowing && !facets.printed_shadowing() && needs_bound;
         facets
     }
 }

@@ -6,7 +6,7 @@ mod slope_split;
 pub mod vocabulary;
 
 pub use parameters::{
-    Average, FootprintMeasure, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel, Parameters,
-    Readings, Surface, Water,
+    Average, FootprintMeasure, Hiding, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel,
+    Parameters, Surface, Water,
 };
 pub use slope_split::SlopeBudget;

@@ -3,19 +3,9 @@
 use super::slope_split::{SlopeBudget, SlopeSplit};
 use crate::brdf::{Fresnel, Lobe, SlopeMeasure, SlopeStatistics, WindAxes};
 use crate::error::{Error, Warning};
+use crate::readings::Readings;
 use crate::sea::{Salinity, SpectrumModel, Wind, WindProfile, whitecap};
 use std::f64::consts::{LN_2, SQRT_2};
-
-/// How the report's defective equations are read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Readings {
-    /// With the corrections of docs/model.md.
-    #[default]
-    Corrected,
-    /// pi/4 (56), unsigned angles (71-73) and the c21 term (78) as they stand, and neither of the bounds
-    /// by which the corrected readings conserve energy (`Facets::masked_area`, steep facets).
-    AsPrinted,
-}
 
 /// Which surface the facets lie on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -76,6 +66,16 @@ pub enum Average {
     Power,
     /// The report's mean of f, times the cosine to the vertical.
     Report,
+}
+
+/// Where waves are geometry, whose slopes the facets' shadowing has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Hiding {
+    /// The whole sea's, as the report: what waves hide is then counted partly twice.
+    #[default]
+    Report,
+    /// The facets' own: what longer waves hide is theirs to hide.
+    Once,
 }
 
 /// How the empirical model falls off across the plane of incidence.
@@ -144,7 +144,7 @@ pub struct Parameters {
     /// Refractive index; else that of water of a `salinity` at `wavelength` and `temperature`.
     pub ior: Option<f64>,
     /// Extinction coefficient k, the imaginary part of the index; else that of water at `wavelength`, or 0 with an `ior` or
-    /// [`Readings::AsPrinted`].
+    /// [`Readings::EQ_62`].
     pub extinction: Option<f64>,
     /// Salt or fresh.
     pub water: Salinity,
@@ -156,12 +156,14 @@ pub struct Parameters {
     pub fresnel: Fresnel,
     /// Measure of the slope density.
     pub slope_measure: SlopeMeasure,
-    /// Reading of the defective equations.
+    /// Which equations are taken as printed.
     pub readings: Readings,
     /// Whitecaps blended in.
     pub whitecaps: bool,
     /// Shadowing function applied.
     pub shadowing: bool,
+    /// Whose slopes it has.
+    pub hiding: Hiding,
     /// Skewness and kurtosis applied.
     pub gram_charlier: bool,
 }
@@ -193,9 +195,10 @@ impl Default for Parameters {
             salinity: None,
             fresnel: Fresnel::Schlick,
             slope_measure: SlopeMeasure::Angle,
-            readings: Readings::Corrected,
+            readings: Readings::CORRECTED,
             whitecaps: true,
             shadowing: true,
+            hiding: Hiding::Report,
             gram_charlier: true,
         }
     }

@@ -3,6 +3,7 @@
 use crate::brdf::SlopeStatistics;
 use crate::brdf::slopes::VARIANCE_FLOOR;
 use crate::numeric::root::bisect;
+use crate::readings::Readings;
 use crate::sea::spectrum::{share, shortest};
 use crate::sea::{Spectrum, WindProfile};
 use std::f64::consts::SQRT_2;
@@ -28,6 +29,7 @@ pub struct SlopeSplit {
     pub spectrum: Spectrum,
     wind: WindProfile,
     statistics: SlopeStatistics,
+    readings: Readings,
     /// With a closed budget, the wave number in rad/cm up to which the waves leave the facets their part.
     limit: Option<f64>,
 }
@@ -39,6 +41,7 @@ impl SlopeSplit {
         wind: &WindProfile,
         spectrum: Spectrum,
         statistics: SlopeStatistics,
+        readings: Readings,
     ) -> Self {
         let limit = (budget == SlopeBudget::Closed).then(|| {
             let most = statistics.total(wind).map(|total| (1.0 - FACETS) * total);
@@ -54,14 +57,14 @@ impl SlopeSplit {
             };
             if exceeds(high) { bisect(low, high, exceeds) } else { high }
         });
-        Self { spectrum, wind: *wind, statistics, limit }
+        Self { spectrum, wind: *wind, statistics, readings, limit }
     }
 
     /// Smallest and largest wave number drawn (Eqs. 21-22), rad/cm, for a footprint in m; `None`: there are no waves.
     pub fn range(&self, footprint: f64) -> Option<[f64; 2]> {
         let s = &self.spectrum;
         let k_max = match self.limit {
-            None => s.k_max(footprint)?,
+            None => s.k_max(footprint, self.readings)?,
             Some(limit) => limit.min(shortest(footprint)),
         };
         (s.k_min < k_max).then_some([s.k_min, k_max])

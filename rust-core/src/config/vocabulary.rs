@@ -1,8 +1,8 @@
 //! The one vocabulary of parameters: scene files, flags, C, Python and Rust all use these names.
 
 use super::parameters::{
-    Average, DRAWN, FootprintMeasure, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel,
-    Parameters, Readings, SEEDS, Surface, Water,
+    Average, DRAWN, FootprintMeasure, Hiding, LONGEST_TIME, MOST_COMPONENTS, MOST_INSTANCES, OffPlaneModel,
+    Parameters, SEEDS, Surface, Water,
 };
 use super::slope_split::SlopeBudget;
 use crate::brdf::fresnel::WAVELENGTHS;
@@ -117,7 +117,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 31] = [
+pub const ENTRIES: [Entry; 32] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -408,11 +408,19 @@ pub const ENTRIES: [Entry; 31] = [
         name: "readings",
         unit: "",
         default: "corrected",
-        allowed: "corrected, as_printed",
-        help: "`corrected` or `as_printed` equations, see docs/model.md",
+        allowed: "corrected, 22, 43-45, 56, 62, 65, 66, 70, 71-73, 78, 82, 88, as_printed",
+        help: "equations taken as printed: none (`corrected`), the whole print (`as_printed`), or a list, such as `56, 71-73`",
         surfaces: ALL,
         kind: Kind::Word,
-        access: field!(word, readings, READINGS),
+        access: Access {
+            holds: |_| true,
+            get: |p| Some(Value::Text(p.readings.to_string())),
+            // An equation by itself may come as a number.
+            set: |b, name, value| match value {
+                Value::Flag(_) => Err(wrong_type(name, value, "a word")),
+                _ => value.to_string().parse().map(|readings| b.parameters.readings = readings),
+            },
+        },
     },
     Entry {
         name: "whitecaps",
@@ -433,6 +441,17 @@ pub const ENTRIES: [Entry; 31] = [
         surfaces: ALL,
         kind: Kind::Flag,
         access: field!(flag, shadowing),
+    },
+    Entry {
+        name: "hiding",
+        unit: "",
+        default: "report",
+        allowed: "report, once",
+        help: "slopes in the shadowing function: the whole sea's, as the `report`, or the facets' own, so \
+               that what longer waves hide counts `once`; the same for an infinite footprint",
+        surfaces: ALL,
+        kind: Kind::Word,
+        access: field!(word, hiding, HIDINGS),
     },
     Entry {
         name: "gram_charlier",
@@ -456,7 +475,7 @@ pub(crate) fn check(parameter: &'static str, x: f64, shown: impl ToString) -> Re
 pub const WIND: [&str; 4] = ["wind_speed", "wind_height", "friction_velocity", "beaufort"];
 
 /// The parameters that do not describe the sea, but how its surface reflects.
-pub const OPTICS: [&str; 12] = [
+pub const OPTICS: [&str; 13] = [
     "average",
     "across",
     "wavelength",
@@ -468,6 +487,7 @@ pub const OPTICS: [&str; 12] = [
     "slope_measure",
     "readings",
     "shadowing",
+    "hiding",
     "gram_charlier",
 ];
 
@@ -550,6 +570,7 @@ const FOOTPRINTS: [(&str, FootprintMeasure); 4] = [
     ("side", FootprintMeasure::Side),
 ];
 const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Average::Report)];
+const HIDINGS: [(&str, Hiding); 2] = [("report", Hiding::Report), ("once", Hiding::Once)];
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
@@ -562,8 +583,6 @@ const SPECTRA: [(&str, SpectrumModel); 4] = [
 const BUDGETS: [(&str, SlopeBudget); 2] = [("report", SlopeBudget::Report), ("closed", SlopeBudget::Closed)];
 const STATISTICS: [(&str, SlopeStatistics); 2] =
     [("cox_munk", SlopeStatistics::CoxMunk), ("breon_henriot", SlopeStatistics::BreonHenriot)];
-const READINGS: [(&str, Readings); 2] =
-    [("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)];
 
 fn word<C: PartialEq>(choice: &C, choices: &[(&str, C)]) -> Option<Value> {
     choices.iter().find(|(_, c)| c == choice).map(|(name, _)| Value::Text((*name).into()))
@@ -707,6 +726,7 @@ impl Builder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::readings::Readings;
 
     #[test]
     fn what_is_set_can_be_read() {
@@ -738,9 +758,10 @@ mod tests {
             ("salinity", Value::Number(7.0)),
             ("fresnel", Value::Text("exact".into())),
             ("slope_measure", Value::Text("slope".into())),
-            ("readings", Value::Text("as_printed".into())),
+            ("readings", Value::Text("56, 71-73".into())),
             ("whitecaps", Value::Flag(false)),
             ("shadowing", Value::Flag(false)),
+            ("hiding", Value::Text("once".into())),
             ("gram_charlier", Value::Flag(false)),
         ];
         assert_eq!(values.len(), ENTRIES.len());
@@ -803,9 +824,10 @@ mod tests {
                 salinity: Some(0.1),
                 fresnel: Fresnel::Exact,
                 slope_measure: SlopeMeasure::Slope,
-                readings: Readings::AsPrinted,
+                readings: Readings::EQ_66 | Readings::EQ_22,
                 whitecaps: false,
                 shadowing: false,
+                hiding: Hiding::Once,
                 gram_charlier: false,
             };
             let text = given.configure().unwrap().to_string();

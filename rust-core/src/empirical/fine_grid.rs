@@ -2,13 +2,14 @@
 //! evaluate, in any number type.
 
 use crate::brdf::lobe::{defined, sine};
-use crate::brdf::shadowing::cos_lambda;
 use crate::brdf::{Lobe, Parts};
 use crate::config::OffPlaneModel;
 use crate::numeric::packets::{Packets, Tabulated};
 use crate::numeric::real::dot;
 use crate::numeric::{Real, Scalar, Vec3};
+use crate::readings::Readings;
 use crate::statistics::level_water::{MIN_COS, NOTHING};
+use std::f64::consts::PI;
 
 /// Steps of the fine grid: over theta_i, the wind's azimuth and theta_r.
 pub(crate) const INCIDENCES: usize = 32;
@@ -195,7 +196,7 @@ impl<T: Tabulated> FineGrid<T> {
         };
         let mut area = cos[0] * cos[1];
         if facets.shadowing {
-            let masked = |k: usize| cos_lambda(cos[k], facets.sigma_shadow * sin[k]);
+            let masked = |k: usize| facets.masked(cos[k], facets.sigma_shadow * sin[k]);
             area = cos[1].mul_add(masked(0), cos[0].mul_add(masked(1), area));
         }
         (self.ln_density(slope), T::max(area, T::of(GRAZING)).recip())
@@ -242,12 +243,17 @@ impl<T: Tabulated> FineGrid<T> {
         let around = one - cos * T::max(cos.abs() + sin.abs(), T::TINY).recip();
         let [forward, aside] = [o[0].mul_add(x, o[1] * y), o[1] * x - o[0] * y];
         let length = forward.mul_add(forward, o[2] * o[2]).sqrt();
-        let tan_r = forward * T::max(length + o[2], T::SMALL).recip();
+        let mut tan_r = forward * T::max(length + o[2], T::SMALL).recip();
         // Eqs. 87-89 by half angles; both components that make phi are 1 + tan^2 times as long.
         let tan2 = tan_i * tan_i;
         let secant2 = one + tan2;
         let specular = (T::of(2.0) * tan_i).mul_add(forward, (one - tan2) * o[2]);
-        let phi = Real::atan2(aside * secant2, T::max(specular.abs(), T::SMALL));
+        let mut phi = Real::atan2(aside * secant2, T::max(specular.abs(), T::SMALL));
+        phi = T::select(T::lt(sin, zero), -phi, phi);
+        if facets.readings.contains(Readings::EQ_88) {
+            (tan_r, phi) = (tan_r.abs(), phi.abs());
+            phi = T::select(T::lt(specular, zero), T::of(PI) - phi, phi);
+        }
         let lower = T::min(tan_i, tan_r);
         let thetas = T::of(0.5 * THETAS as f64);
         Place {
@@ -258,7 +264,7 @@ impl<T: Tabulated> FineGrid<T> {
             half_i,
             wind: [cos, sin],
             forward: [x, y],
-            phi: T::select(T::lt(sin, zero), -phi, phi),
+            phi,
             narrowing: (-tan_i).mul_add(lower, one) * (secant2 * lower.mul_add(lower, one)).rsqrt(),
         }
     }

@@ -122,7 +122,7 @@ impl ReferenceModel {
     /// and the plane is that of x and z at normal incidence as well.
     pub fn node(&self, incidence: f64, thetas: &[f64]) -> Result<Node, Error> {
         let source = [-incidence.sin(), 0.0, incidence.cos()];
-        let planes = Planes::new(source, 0.0);
+        let planes = Planes::new(source, 0.0).with_readings(self.water.parameters.readings);
         // So far across as the lobe is wide, from the slopes' standard deviation across; refined once by its own fit.
         let [upwind, crosswind, _] = variances(&self.waves);
         let slopes = self.water.variances.iter().sum::<f64>() + upwind + crosswind;
@@ -136,6 +136,8 @@ impl ReferenceModel {
             }
         }
         let fits = self.fits(&planes, &across.phis);
+        // From angles of Eq. 82 to those of Eq. 88; widths by Eq. 89.
+        let scale = planes.scale_across();
         let cos = incidence.cos();
         let total: f64 = fits.iter().map(|(weight, _)| weight).sum();
         let fitted: Vec<(f64, Gaussian)> =
@@ -155,10 +157,10 @@ impl ReferenceModel {
         Ok(Node {
             in_plane: self.moments(&planes, &directions)?,
             approximate: directions.iter().map(approximate).collect(),
-            sigma: across.fit.map_or(0.0, |g| g.width / cos),
-            u_sigma: spread(&|g| g.width / cos),
-            delta: across.fit.map_or(0.0, |g| g.center),
-            u_delta: spread(&|g| g.center),
+            sigma: across.fit.map_or(0.0, |g| scale * g.width / cos),
+            u_sigma: spread(&|g| scale * g.width / cos),
+            delta: across.fit.map_or(0.0, |g| g.center * scale),
+            u_delta: spread(&|g| g.center * scale),
             fitted: if total > 0.0 { known / total } else { 0.0 },
         })
     }
@@ -233,8 +235,7 @@ impl ReferenceModel {
                     self.point(instance, source, |point, surface, ray| {
                         for (sums, way) in sums.iter_mut().zip(ways) {
                             self.add(sums, point, source, *way, || {
-                                let observer = DVec3::from(*way) * OBSERVERS;
-                                !ray.occludes(surface, point.position, observer)
+                                self.sees(surface, ray, point.position, *way)
                             });
                         }
                     });
@@ -247,6 +248,12 @@ impl ReferenceModel {
             all.iter_mut().zip(&sums).for_each(|(all, sums)| all.add(sums));
         }
         all
+    }
+
+    /// Whether nothing stands between a point and an observer in a direction, far away.
+    fn sees(&self, surface: &Surface, ray: &mut SurfaceRay, from: DVec3, way: [f64; 3]) -> bool {
+        let way = DVec3::from(way);
+        !(self.water.may_occlude(surface, way) && ray.occludes(surface, from, way * OBSERVERS))
     }
 
     /// Shows a drawn surface's point at the origin, if it faces the source.
@@ -321,12 +328,8 @@ impl ReferenceModel {
                     .zip(&rho)
                     .map(|(way, rho)| {
                         let f = self.water.lobe.facets.eval(source, *way, point.normal) / rho;
-                        let observer = DVec3::from(*way) * OBSERVERS;
-                        if f > 0.0 && way[2] > 0.0 && !ray.occludes(surface, point.position, observer) {
-                            f
-                        } else {
-                            0.0
-                        }
+                        let seen = f > 0.0 && way[2] > 0.0 && self.sees(surface, ray, point.position, *way);
+                        if seen { f } else { 0.0 }
                     })
                     .collect();
                 found = (point.area, Gaussian::fit(phis, &curve));

@@ -272,7 +272,7 @@ pub(crate) struct Slice {
 }
 
 /// Parameters that a table has only one value of.
-pub(crate) const SHARED: [&str; 12] = [
+pub(crate) const SHARED: [&str; 13] = [
     "spectrum",
     "slopes",
     "slope_budget",
@@ -284,11 +284,12 @@ pub(crate) const SHARED: [&str; 12] = [
     "readings",
     "whitecaps",
     "shadowing",
+    "hiding",
     "gram_charlier",
 ];
 
 /// Those of them that were added later: a file tells them where they are not the defaults.
-pub(crate) const ADDED: [&str; 3] = ["spectrum", "slopes", "slope_budget"];
+pub(crate) const ADDED: [&str; 4] = ["spectrum", "slopes", "slope_budget", "hiding"];
 
 /// What else it was made with: how many points were drawn and which, and of which water the reflectance was that its
 /// numbers do not have.

@@ -156,8 +156,8 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
         return Err(format!("its format_version is {}, expected {FORMAT_VERSION}", told("format_version")));
     }
     let parameters = told("parameters");
-    if let Some(missing) = SHARED.iter().find(|name| !ADDED.contains(name) && parameters.get(name).is_none())
-    {
+    let untold = |name: &&&str| !ADDED.contains(name) && parameters.get(name).is_none();
+    if let Some(missing) = SHARED.iter().find(untold) {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {

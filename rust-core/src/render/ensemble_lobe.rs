@@ -267,7 +267,7 @@ impl<T: Tabulated> MeanLobe<T> {
         let tangential = |v: Local<T>| [0, 1].map(|k| v[2].mul_add(slope[k], v[k]) * n_z);
         let sigmas = [facets.sigma_u, facets.sigma_c];
         let mut spreads = [zero; 2];
-        if facets.bounded {
+        if facets.needs_spreads() {
             spreads = [spread(tangential(i), sigmas), spread(tangential(o), sigmas)];
         }
         let area = facets.masked_area(rho, [cos_i, cos_o], spreads);

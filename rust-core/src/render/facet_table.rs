@@ -2,7 +2,7 @@
 
 use crate::brdf::Facets;
 use crate::brdf::lobe::BOUND_SLACK;
-use crate::config::Water;
+use crate::config::{Hiding, Water};
 use crate::numeric::packets::{Packets, Tabulated};
 use crate::numeric::{Real, Scalar};
 use rayon::prelude::*;
@@ -20,6 +20,8 @@ pub struct FacetTable<T: Real> {
     scale: T,
     /// Whether the bound on what facets reflect is in force at any footprint.
     pub bounded: bool,
+    /// [`Hiding::Once`].
+    own_shadows: bool,
     /// sigma_u, sigma_c, steep_gain, bound and the proposal's two of [`Facets`], and what fills a packet.
     rows: Packets,
 }
@@ -44,6 +46,7 @@ impl FacetTable<f64> {
         Self {
             scale: facets.scale * facets.sigma_u * facets.sigma_c,
             bounded: rows.iter().any(|row| row[3] < BOUND_SLACK),
+            own_shadows: water.parameters.hiding == Hiding::Once,
             rows: Packets {
                 width: 8,
                 half: false,
@@ -57,7 +60,7 @@ impl<S: Scalar> FacetTable<S> {
     /// The same in another number type.
     pub fn cast<T: Real>(&self) -> FacetTable<T> {
         let scale = T::coefficient(self.scale.to_f64());
-        FacetTable { scale, bounded: self.bounded, rows: self.rows.clone() }
+        FacetTable { scale, bounded: self.bounded, own_shadows: self.own_shadows, rows: self.rows.clone() }
     }
 }
 
@@ -82,6 +85,7 @@ impl<T: Tabulated> FacetTable<T> {
         facets.steep_gain = row(2);
         facets.bound = row(3);
         facets.bounded = self.bounded;
+        facets.own_shadows = self.own_shadows;
         facets.proposal = [row(4), row(5)];
     }
 }

@@ -7,6 +7,7 @@ use super::jonswap::Jonswap;
 use super::salinity::Salinity;
 use super::wind::WindProfile;
 use crate::numeric::quadrature::{gauss_legendre, panels};
+use crate::readings::Readings;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
 
@@ -75,11 +76,15 @@ impl Spectrum {
         Self { dispersion, form, k0, k1, k2, k_min }
     }
 
-    /// Largest wave number drawn (Eq. 22), rad/cm, for a footprint in m; `None` where the wind raises no
-    /// waves as long as that.
-    pub fn k_max(&self, footprint: f64) -> Option<f64> {
-        let shortest = shortest(footprint);
-        (self.k_min < self.k2).then(|| self.k2.min(shortest.max(10f64.sqrt() * self.k_min)))
+    /// Largest wave number drawn (Eq. 22, read or as printed), rad/cm, for a footprint in m; `None` where the wind raises
+    /// no waves as long as that: beyond k2 they have no energy.
+    pub fn k_max(&self, footprint: f64, readings: Readings) -> Option<f64> {
+        if self.k_min >= self.k2 {
+            return None;
+        }
+        let shortest = shortest(footprint).max(10f64.sqrt() * self.k_min);
+        let printed = readings.contains(Readings::EQ_22);
+        Some(if printed { self.k2.max(shortest) } else { self.k2.min(shortest) })
     }
 
     /// Angular frequency, rad/s, of a wave number in rad/cm (Eq. 4).
@@ -213,9 +218,9 @@ mod tests {
 
     #[test]
     fn no_waves_in_a_calm() {
-        assert_eq!(spectrum(0.0).k_max(0.15), None);
-        assert_eq!(spectrum(0.471).k_max(0.15), None);
-        assert!(spectrum(0.473).k_max(0.15).is_some());
+        assert_eq!(spectrum(0.0).k_max(0.15, Readings::CORRECTED), None);
+        assert_eq!(spectrum(0.471).k_max(0.15, Readings::CORRECTED), None);
+        assert!(spectrum(0.473).k_max(0.15, Readings::CORRECTED).is_some());
         let calm = Wind::FrictionVelocity(0.0).profile().unwrap();
         for fetch in [100.0, f64::INFINITY] {
             let s = Spectrum::new(SpectrumModel::Report, &calm, Salinity::Ocean, f64::INFINITY, fetch);
@@ -224,7 +229,7 @@ mod tests {
         for w in [0.473, 2.0, 8.0, 56.0, 238.65] {
             for footprint in [1e-3, 0.15, 100.0, f64::INFINITY] {
                 let s = spectrum(w);
-                let k_max = s.k_max(footprint).unwrap();
+                let k_max = s.k_max(footprint, Readings::CORRECTED).unwrap();
                 assert!(s.k_min < k_max && k_max <= s.k2);
             }
         }
@@ -291,7 +296,7 @@ mod tests {
     #[test]
     fn every_calm_is_flat() {
         for s in every(0.0) {
-            assert!(s.k_min.is_infinite() && s.k_max(0.15).is_none());
+            assert!(s.k_min.is_infinite() && s.k_max(0.15, Readings::CORRECTED).is_none());
             assert!([1e-3, 0.1, s.k2].iter().all(|k| s.density(*k) == 0.0));
         }
     }

@@ -170,8 +170,9 @@ impl Ensemble {
             let observer = DVec3::from(*observer);
             let way = (observer - from).normalize();
             seen.cos_r = way.dot(n);
-            seen.obscured =
-                seen.cos_r <= 0.0 || worker.ray.occludes(&worker.surface, from - origin, observer - origin);
+            seen.obscured = seen.cos_r <= 0.0
+                || self.water.may_occlude(&worker.surface, way)
+                    && worker.ray.occludes(&worker.surface, from - origin, observer - origin);
             if !seen.obscured {
                 let lobe = &self.water.lobe;
                 let facets = if hit.whitecap < 1.0 {

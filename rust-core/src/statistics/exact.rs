@@ -67,7 +67,8 @@ impl Exact {
     ///
     /// # Errors
     /// [`Error::Surface`] where the surface is flat: it has no waves. [`Error::OutOfRange`] for fewer components than 4, and
-    /// for footprints whose facets are finer than the drawn slopes by orders of magnitude.
+    /// for footprints whose facets are finer than the drawn slopes by orders of magnitude, and where Eq. 70 is taken as
+    /// printed: facets then do not move with the waves.
     pub fn new(water: &Water) -> Result<Self, Error> {
         let water = &water.on(&DRAWN)?;
         let waves = water.waves();

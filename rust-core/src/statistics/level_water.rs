@@ -40,7 +40,7 @@ impl BaselineLobe {
         let reflectance =
             Reflectance { normal: 1.0, excess: 0.0, absorption: 0.0, exact: false, absorbing: false };
         let drawn = DVec2::new(drawn_u, drawn_c).powf(0.5);
-        Self { all: Facets { reflectance, bounded: false, ..all }, drawn }
+        Self { all: Facets { reflectance, bounded: false, own_shadows: false, ..all }, drawn }
     }
 
     /// The same sea under a wind from another azimuth, in degrees.
@@ -126,7 +126,8 @@ impl BaselineLobe {
         let cos = ((o.z - slope.dot(self.to_wind(o.truncate()))) / (1.0 + lean).sqrt()).max(MIN_COS);
         let mut area = i.z * cos;
         if self.all.shadowing {
-            let part = |cos: f64| cos_lambda(cos, self.all.sigma_shadow * (1.0 - cos * cos).max(0.0).sqrt());
+            let sigma_sin = |cos: f64| self.all.sigma_shadow * (1.0 - cos * cos).max(0.0).sqrt();
+            let part = |cos: f64| self.all.masked(cos, sigma_sin(cos));
             area += cos * part(i.z) + i.z * part(cos);
         }
         1.0 / area

@@ -8,7 +8,8 @@
 use super::characteristic::Component;
 use crate::brdf::shadowing::cos_lambda;
 use crate::config::Water;
-use crate::error::Error;
+use crate::error::{Error, refuse};
+use crate::readings::Readings;
 use crate::sea::whitecap;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -74,8 +75,8 @@ pub(crate) struct Slopes {
 }
 
 impl Slopes {
-    /// The slopes of a sea's waves; refused where they are too few, and where the facets are so much finer that tables
-    /// would be huge.
+    /// The slopes of a sea's waves; refused where they are too few, where the facets are so much finer that tables would
+    /// be huge, and with Eq. 70 as printed, by which facets do not move with the waves.
     pub fn new(component: &Component, water: &Water) -> Result<Self, Error> {
         if water.parameters.components < FEWEST_COMPONENTS {
             return Err(Error::OutOfRange {
@@ -83,6 +84,10 @@ impl Slopes {
                 value: water.parameters.components.to_string(),
                 allowed: format!("at least {FEWEST_COMPONENTS} for the density of their slopes"),
             });
+        }
+        let readings = water.parameters.readings;
+        if readings.contains(Readings::EQ_70) {
+            return refuse("readings", readings, "without 70 where no waves are drawn one by one");
         }
         let components = f64::from(water.parameters.components);
         let [u, c, _] = component.variances(components).map(f64::sqrt);

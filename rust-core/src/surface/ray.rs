@@ -7,7 +7,9 @@
 //! closes in on a crossing quadratically, as Newton's method would from the safe side, and on a near miss it passes by.
 
 use super::realised::{Surface, sum};
+use crate::config::Water;
 use crate::numeric::trigonometry::{LANES, sin_cos};
+use crate::readings::Readings;
 use glam::{DVec2, DVec3};
 
 /// Gap and derivative are known to about this, m and 1.
@@ -26,6 +28,15 @@ pub struct SurfaceRay {
     curvature_bound: f64,
     /// Bound of the surface's slope by distance along the ray.
     slope_bound: f64,
+}
+
+impl Water {
+    /// Whether Eqs. 43-45 and 49 let a wave stand in a way off the surface. As read they always do: a march finds out. As
+    /// printed only where the way is not steeper than signed sums, which cancel.
+    pub(crate) fn may_occlude(&self, surface: &Surface, way: DVec3) -> bool {
+        !self.parameters.readings.contains(Readings::EQ_43_45)
+            || way.z <= surface.signed_steepest() * way.truncate().length()
+    }
 }
 
 impl SurfaceRay {

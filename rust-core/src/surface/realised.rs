@@ -129,6 +129,15 @@ impl Surface {
         lanes.flat_map(|((kx, ky), a)| (0..LANES).map(move |l| a[l] * kx[l].hypot(ky[l]))).sum()
     }
 
+    /// Eqs. 43-45 as printed: sums with their signs, which cancel. Slopes may be steeper.
+    pub fn signed_steepest(&self) -> f64 {
+        let along = |k: &[[f64; LANES]]| -> f64 {
+            let lanes = k.iter().zip(&self.amplitude);
+            lanes.flat_map(|(k, a)| (0..LANES).map(move |l| a[l] * k[l])).sum()
+        };
+        along(&self.k_x).hypot(along(&self.k_y))
+    }
+
     /// The phase functions (Eq. 31) over a place in m, lane by lane.
     fn phases(&self, [x, y]: [f64; 2], lanes: usize) -> [f64; LANES] {
         let (kx, ky, phase) = (&self.k_x[lanes], &self.k_y[lanes], &self.phase[lanes]);

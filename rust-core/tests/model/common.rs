@@ -2,14 +2,17 @@
 
 use prob_water::{Lobe, Parameters, Water, Wind};
 
-/// Rows of a file of reference vectors, empty fields left out.
-pub fn rows(name: &str) -> Vec<Vec<f64>> {
+/// Rows of a file of reference vectors as texts.
+pub fn texts(name: &str) -> Vec<csv::StringRecord> {
     let path = format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let rows: Vec<Vec<f64>> =
-        reader.records().map(|r| r.unwrap().iter().map(|x| x.parse().unwrap()).collect()).collect();
+    let rows: Vec<_> = csv::Reader::from_path(path).unwrap().records().map(Result::unwrap).collect();
     assert!(rows.len() > 10);
     rows
+}
+
+/// Rows of a file of reference vectors.
+pub fn rows(name: &str) -> Vec<Vec<f64>> {
+    texts(name).iter().map(|row| row.iter().map(|x| x.parse().unwrap()).collect()).collect()
 }
 
 /// The larger of two deviations; not a number counts as the largest, so that no bound takes it for small.

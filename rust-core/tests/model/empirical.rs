@@ -393,15 +393,16 @@ fn what_the_table_does_not_know() {
     let water = sea(8.0, 0.0, 1);
     let table = Table::standard();
     type Change = fn(&mut Parameters);
-    let refused: [(&str, Change); 13] = [
+    let refused: [(&str, Change); 14] = [
         ("components", |p| p.components = 6),
         ("depth", |p| p.depth = 10.0),
         ("fetch", |p| p.fetch = 1e4),
         ("water", |p| p.water = prob_water::Salinity::Fresh),
         ("slope_measure", |p| p.slope_measure = prob_water::SlopeMeasure::Slope),
-        ("readings", |p| p.readings = prob_water::Readings::AsPrinted),
+        ("readings", |p| p.readings = prob_water::Readings::AS_PRINTED),
         ("whitecaps", |p| p.whitecaps = false),
         ("shadowing", |p| p.shadowing = false),
+        ("hiding", |p| p.hiding = prob_water::Hiding::Once),
         ("gram_charlier", |p| p.gram_charlier = false),
         ("friction_velocity", |p| p.wind = Wind::FrictionVelocity(1.9)),
         ("wind_speed", |p| p.wind = Wind::Speed { speed: 30.0, height: 10.0 }),
@@ -436,7 +437,7 @@ fn what_the_table_does_not_know() {
 #[test]
 fn tables_of_ones_own() {
     let water = with(&sea(24.0, 0.0, 500), |p| {
-        (p.whitecaps, p.readings) = (false, prob_water::Readings::AsPrinted);
+        (p.whitecaps, p.readings) = (false, prob_water::Readings::EQ_71_73);
     });
     let grid = Grid {
         friction_velocity: vec![24.0],

@@ -1,7 +1,7 @@
 //! The sea seen from afar against the ray cast, against exact means, and what must hold of any BRDF.
 
 use crate::common::{direction, dot, water, worse};
-use prob_water::{Average, Engagement, Ensemble, EnsembleLobe, Exact, Surface, Water, WhitecapMode};
+use prob_water::{Average, Engagement, Ensemble, EnsembleLobe, Exact, Hiding, Surface, Water, WhitecapMode};
 
 fn sea(w: f64, change: impl FnOnce(&mut prob_water::Parameters)) -> Water {
     water(w, |p| {
@@ -259,8 +259,10 @@ fn finite_on_the_horizon() {
 #[test]
 fn albedo() {
     let winds = [0.6, 4.0, 24.0, 56.0, 120.0];
-    for (w, average) in winds.iter().flat_map(|w| [(*w, Average::Power), (*w, Average::Report)]) {
-        let water = sea(w, |p| (p.whitecaps, p.average) = (false, average));
+    let kinds =
+        [(Average::Power, Hiding::Report), (Average::Report, Hiding::Report), (Average::Power, Hiding::Once)];
+    for (w, (average, hiding)) in winds.iter().flat_map(|w| kinds.map(|kind| (*w, kind))) {
+        let water = sea(w, |p| (p.whitecaps, p.average, p.hiding) = (false, average, hiding));
         let lobe = EnsembleLobe::new(&water).unwrap();
         for incidence in [0.0, 40.0, 70.0, 85.0, 89.0] {
             let i = direction(incidence, 0.0);

@@ -308,7 +308,7 @@ fn distributions() {
         ("hurricane, shallow", 20.0, sea(200.0, &|p| (p.footprint, p.depth) = (Some(5.0), 0.2))),
         ("hurricane, no depth", 20.0, sea(238.0, &|p| (p.footprint, p.depth) = (Some(5.0), 1e-200))),
         ("slopes", 10.0, sea(40.0, &|p| p.slope_measure = prob_water::SlopeMeasure::Slope)),
-        ("as printed", 30.0, sea(16.0, &|p| p.readings = prob_water::Readings::AsPrinted)),
+        ("as printed", 30.0, sea(16.0, &|p| p.readings = prob_water::Readings::AS_PRINTED)),
         ("calm", 30.0, sea(0.0, &|_| ())),
         ("next to calm", 30.0, sea(0.4, &|p| p.components = 1)),
     ];

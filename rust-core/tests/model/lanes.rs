@@ -2,7 +2,9 @@
 
 use prob_water::batch::{Columns, Coordinates, Rows, SampleColumns, Sources};
 use prob_water::simd::SimdLevel;
-use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, SlopeStatistics, Wind};
+use prob_water::{
+    Error, Fresnel, Hiding, Lobe, Parameters, Readings, Sample, SlopeMeasure, SlopeStatistics, Wind,
+};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::f64::consts::TAU;
 
@@ -68,7 +70,8 @@ fn seas() -> Vec<Parameters> {
                 plain,
                 oblique,
                 Parameters { slope_measure: SlopeMeasure::Slope, fresnel: Fresnel::Exact, ..oblique },
-                Parameters { readings: Readings::AsPrinted, shadowing: false, ior: Some(1.1), ..plain },
+                Parameters { readings: Readings::AS_PRINTED, shadowing: false, ior: Some(1.1), ..plain },
+                Parameters { readings: Readings::AS_PRINTED, hiding: Hiding::Once, ..oblique },
                 Parameters { gram_charlier: false, ior: Some(4.0), ..oblique },
                 // Water absorbs there.
                 Parameters { wavelength: 12.5, fresnel: Fresnel::Exact, ..oblique },
@@ -193,6 +196,39 @@ fn lanes_follow_float64() {
             assert!(most < 1e-4 && median < 1e-5, "scalar float32: {most:e}, {median:e}; {sea:?}");
         }
     }
+}
+
+/// Eq. 70 as printed: facets about the vertical, and the rest of the lobe about the normal, which both are near.
+#[test]
+fn upright_facets_follow_float64() {
+    let mut rng = StdRng::seed_from_u64(5);
+    let oblique = Parameters { wind_direction: 33.0, readings: Readings::EQ_70, ..Parameters::default() };
+    let sea = Parameters { footprint: Some(0.15), whitecaps: false, ..oblique };
+    let [i, o, _] = rows(&sea, false, 500, &mut rng);
+    let n: Vectors =
+        (0..500).map(|_| [rng.random_range(-0.1..0.1f32), 0.1, 0.99f32.sqrt()]).map(unit).collect();
+    let tables = [&i, &o, &n].map(Table::of);
+    let [ti, to, tn] = tables.each_ref().map(Table::columns);
+    let columns = Columns::new(ti, to, Some(tn)).unwrap();
+    let lobe = sea.configure().unwrap().local_lobe();
+    let plain = Parameters { gram_charlier: false, ..sea }.configure().unwrap().local_lobe();
+    for level in levels() {
+        let mut f = vec![f32::NAN; 500];
+        columns.eval_on(level, &lobe.cast(), &mut f).unwrap();
+        let mut lit = 0;
+        for (k, f) in f.into_iter().enumerate() {
+            let [i, o, n] = [i[k], o[k], n[k]].map(wide);
+            let (exact, size) = (lobe.eval(i, o, n), plain.eval(i, o, n));
+            assert!((f64::from(f) - exact).abs() <= 1e-4 * size, "{level:?}: {f} {exact}");
+            lit += usize::from(size > 0.0);
+        }
+        assert!(lit > 300, "{lit}");
+    }
+}
+
+fn unit(v: [f32; 3]) -> [f32; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f32>().sqrt();
+    v.map(|x| x / length)
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn seas() -> Vec<Parameters> {
         defaults,
         Parameters { wind_direction: 30.0, slope_measure: SlopeMeasure::Slope, ..defaults },
         Parameters { fresnel: Fresnel::Exact, shadowing: false, gram_charlier: false, ..defaults },
-        Parameters { readings: Readings::AsPrinted, whitecaps: false, ..defaults },
+        Parameters { readings: Readings::AS_PRINTED, whitecaps: false, ..defaults },
         // With the bound of a calm sea.
         Parameters { wind: prob_water::Wind::FrictionVelocity(2.0), ..defaults },
     ]

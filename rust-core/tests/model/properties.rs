@@ -32,6 +32,8 @@ fn text() -> impl Strategy<Value = String> {
         "schlick",
         "as_printed",
         "corrected",
+        "56, 71-73",
+        "once",
         "fresh",
         "ocean",
         "power",

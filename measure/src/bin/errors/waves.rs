@@ -6,7 +6,8 @@ use prob_water::spectrum::Spectrum;
 use prob_water::surface::SurfaceRay;
 use prob_water::surface::{Component, Draws, InstanceRng};
 use prob_water::{
-    Layout, Mesh, Parameters, RealisedSurface, Salinity, SpectrumModel, Surface, Water, WaveSums, Wind,
+    Layout, Mesh, Parameters, Readings, RealisedSurface, Salinity, SpectrumModel, Surface, Water, WaveSums,
+    Wind,
 };
 use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
@@ -57,7 +58,7 @@ fn spectrum(lines: &mut Lines) {
     let s = Spectrum::new(SpectrumModel::Report, &profile, water, depth, fetch);
     let footprint = lines.footprint();
     let k = lines.decades(s.k_min, s.k2);
-    let k_max = s.k_max(footprint).expect("there are waves from 0.5 cm/s");
+    let k_max = s.k_max(footprint, Readings::CORRECTED).expect("there are waves from 0.5 cm/s");
     let x = json!([w, depth, fetch, density, footprint, k]);
     lines.row("wave_numbers", x.clone(), json!({"float64": [s.k0, s.k1, s.k2, s.k_min, k_max]}));
     lines.row("spectrum", x, json!({"float64": [s.density(k), s.frequency(k)]}));

@@ -104,7 +104,7 @@ impl Draw {
             water: self.one_of(&[Salinity::Ocean, Salinity::Fresh]),
             fresnel: self.one_of(&[Fresnel::Schlick, Fresnel::Exact]),
             slope_measure: self.one_of(&[SlopeMeasure::Angle, SlopeMeasure::Slope]),
-            readings: self.one_of(&[Readings::Corrected, Readings::Corrected, Readings::AsPrinted]),
+            readings: self.one_of(&[Readings::CORRECTED, Readings::CORRECTED, Readings::AS_PRINTED]),
             whitecaps: self.flag(),
             shadowing: self.flag(),
             gram_charlier: self.flag(),
