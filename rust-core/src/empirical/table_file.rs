@@ -13,6 +13,7 @@
 //! and the units of all arrays. Every array has a check sum.
 
 use super::table::{Grid, MADE_WITH, SHARED, Table, kept};
+use crate::config::Parameters;
 use crate::config::vocabulary::Value;
 use crate::error::Error;
 use npyz::WriterBuilder;
@@ -79,9 +80,11 @@ impl Table {
 
     /// What the file says of itself.
     pub fn metadata(&self) -> String {
+        let defaults = Parameters::default();
         let parameters: Map<_, _> = SHARED
             .iter()
             .chain(&MADE_WITH)
+            .filter(|name| !LATER.contains(name) || self.parameters.get(name) != defaults.get(name))
             .filter_map(|name| {
                 let value = match self.parameters.get(name)? {
                     Value::Flag(x) => json!(x),
@@ -136,7 +139,7 @@ fn add<W: Write + Seek, T: npyz::AutoSerialize>(
     array.finish()
 }
 
-/// Parameters that are younger than tables which do not tell them: these have their defaults.
+/// Parameters that a file tells where they are not the default: files are older than they.
 const LATER: [&str; 1] = ["hiding"];
 
 type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
@@ -230,7 +233,7 @@ fn array<T: npyz::Deserialize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Parameters, Surface};
+    use crate::config::Surface;
     use crate::empirical::table::Plan;
 
     fn small() -> Table {
