@@ -1,4 +1,4 @@
-"""The reference rows of `readings = "as_printed"` are what their script gives."""
+"""The reference rows of equations as printed are what their script gives."""
 
 from validation.error_budget.printed_rows import rows
 from validation.support.paths import ROOT

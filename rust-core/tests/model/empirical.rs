@@ -437,7 +437,8 @@ fn what_the_table_does_not_know() {
 #[test]
 fn tables_of_ones_own() {
     let water = with(&sea(24.0, 0.0, 500), |p| {
-        (p.whitecaps, p.readings) = (false, prob_water::Readings::EQ_71_73);
+        (p.whitecaps, p.hiding) = (false, prob_water::Hiding::Once);
+        p.readings = prob_water::Readings::EQ_71_73;
     });
     let grid = Grid {
         friction_velocity: vec![24.0],
