@@ -56,7 +56,7 @@ TERMS = [
     Term("its exponential and erfc, float64", "", "directions high above the horizon (cos > 8 sigma sin)",
          timed="exponential and erfc of shadowing, float64"),
     Term("masking bound", "`shadowing = false`, `readings` 65 or 66",
-         "where Eq. 67 stays within 11 % of it everywhere: w* above 9 cm/s for D = inf", "masking_bound",
+         "where Eq. 67 stays within 11 % of it everywhere: w* above 9 cm/s for D = inf", "visible_bound",
          ({"friction_velocity": 8.0}, {"friction_velocity": 24.0})),
     Term("Gram-Charlier", "`gram_charlier = false`", NEVER, "gram_charlier", ({}, {"gram_charlier": False})),
     Term("exact Fresnel", "default", NEVER, "exact_fresnel", ({"fresnel": "exact"}, {})),

@@ -83,13 +83,13 @@ fn main() {
         "exact_fresnel" if on => parameters.fresnel = Fresnel::Exact,
         "unsigned_angles" if on => parameters.readings = Readings::EQ_71_73,
         "tilt_angles" if !on => parameters.slope_measure = SlopeMeasure::Slope,
-        "masking_bound" => parameters.wind = Wind::FrictionVelocity(4.0),
+        "visible_bound" => parameters.wind = Wind::FrictionVelocity(4.0),
         "oblique_wind" if on => parameters.wind_direction = 37.0,
         "exact_fresnel" | "unsigned_angles" | "tilt_angles" | "oblique_wind" => {}
         _ => panic!("{case}"),
     }
     let mut lobe: Lobe<f32> = parameters.configure().expect("the parameters are valid").local_lobe().cast();
-    if case == "masking_bound" && !on {
+    if case == "visible_bound" && !on {
         assert!(lobe.facets.bounded);
         lobe.facets.bounded = false;
     }

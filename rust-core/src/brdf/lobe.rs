@@ -1,8 +1,8 @@
-//! The BRDF of water at one point: facets about a wave normal (Eqs. 56-61, 68-71), whitecaps, and their mixture.
+//! The BRDF of water at one point: facets about a wave normal and the density of their tilts
+//! (Eqs. 56, 59-61, 68-73, 79), whitecaps, and their mixture.
 //!
 //! Directions are unit vectors away from the surface: `i` to the source, `o` to the observer,
-//! `n` the wave normal, in coordinates with z up. A direction below the horizon of `n` gives 0; a coordinate that is not a
-//! number gives none.
+//! `n` the wave normal, in coordinates with z up. A direction below the horizon of `n` gives 0. NaN in, NaN out.
 
 use super::fresnel::Reflectance;
 use super::shadowing::{cos_lambda, printed_excess};
@@ -28,20 +28,20 @@ pub(crate) fn cosine<T: Real, E: Extended<T>>(v: Vec3<T>, n: Vec3<T>) -> T {
     E::sum_of_products(z, nz, E::sum_of_products(x, nx, y, ny), one).normalize().to_real()
 }
 
-/// `f`, or not a number where a coordinate of the directions or one of their cosines to the normal is none: comparisons hide
-/// it.
+/// `f`; NaN where a coordinate of the directions or one of their cosines to the normal is NaN, which comparisons hide.
 #[inline(always)]
 pub(crate) fn defined<T: Real>(i: Vec3<T>, o: Vec3<T>, [ci, cr]: [T; 2], f: T) -> T {
     T::of(0.0).mul_add((i[0] + o[0]) + (i[1] + o[1]) + (ci + cr), f)
 }
 
-/// The sine of a cosine's angle.
+/// `sin theta` of `cos theta`.
 #[inline(always)]
 pub(crate) fn sine<T: Real>(cos: T) -> T {
     T::max((-cos).mul_add(cos, T::of(1.0)), T::of(0.0)).sqrt()
 }
 
-/// The part of `v` in the plane that `n` is normal to, by its horizontal components times `n_z`.
+/// `v` along the tangents `(n_z, 0, -n_x)` and `(0, n_z, -n_y)`: `n x v` without its vertical component, turned by 90 degrees. Its
+/// length is `sin theta` where `n` is vertical or in the plane of `v` and the vertical.
 #[inline(always)]
 fn tangential_part<T: Real>(v: Vec3<T>, n: Vec3<T>) -> [T; 2] {
     [v[0] * n[2] - v[2] * n[0], v[1] * n[2] - v[2] * n[1]]
@@ -55,7 +55,7 @@ pub struct WindAxes<T: Real> {
     pub cos: T::Extended,
     /// Its sine.
     pub sin: T::Extended,
-    /// So many quarter turns, of a wind along an axis: components are exchanged, and keep their digits.
+    /// `Some(k)` where the azimuth is k quarter turns: components are exchanged exactly.
     pub quadrant: Option<u8>,
 }
 
@@ -187,12 +187,12 @@ pub(crate) struct Geometry<T: Real, E> {
     pub local_i: Vec3<T>,
     /// Tangential parts of the two directions.
     tangential: [[T; 2]; 2],
-    /// Finite; not a number where a coordinate is none.
+    /// Finite; NaN in, NaN out.
     sum: T,
 }
 
 impl<T: Real, E> Geometry<T, E> {
-    /// `f` where both directions are above the horizon, else 0; not a number where a coordinate is none, which comparisons
+    /// `f` where both directions are above the horizon, else 0; NaN in, NaN out, which comparisons
     /// would hide.
     #[inline(always)]
     pub fn above_horizon(&self, f: T) -> T {
@@ -307,7 +307,7 @@ impl<T: Real> Facets<T> {
         T::min(T::min(T::from_density(density), T::MAX) * (rho * self.scale) / area, T::MAX)
     }
 
-    /// `p/cos^4 xi` (Eqs. 72-73, 78-79) over its constants.
+    /// `p/cos^4 xi` (Eqs. 72-73, 78-79) without its factor `1/(2 pi sigma_u sigma_c)`.
     #[inline(always)]
     fn density<E: Extended<T>>(&self, g: &Geometry<T, E>, level: bool) -> T::Density {
         let [u, c] = [self.measure(g.tilt[0], level), self.measure(g.tilt[1], level)];
@@ -322,7 +322,7 @@ impl<T: Real> Facets<T> {
         T::from_density(density * self.scale.to_density())
     }
 
-    /// The same over its constants, for tilts in widths and 1/cos^2 of the whole tilt.
+    /// The same for tilts in widths ([`WIDTH`]) and 1/cos^2 of the whole tilt.
     #[inline(always)]
     pub(crate) fn tilt_density<E: Extended<T>>(&self, u: E, c: E, inv_cos2: T::Density) -> T::Density {
         let (zero, floor) = (T::Density::of(0.0), T::Density::of(STEEP_FLOOR));
@@ -413,7 +413,7 @@ impl<T: Real> Facets<T> {
         self.readings.intersects(Readings::EQ_65 | Readings::EQ_66)
     }
 
-    /// sqrt 2 times the facets' standard deviation along a direction, times its sine.
+    /// sqrt 2 times the facets' standard deviation along a direction (Beckmann's alpha), times its sine.
     #[inline(always)]
     fn spread_along(&self, v: [T; 2]) -> T {
         let [u, c] = self.wind.to_wind(v);
@@ -421,7 +421,8 @@ impl<T: Real> Facets<T> {
     }
 }
 
-/// sqrt 2 times the standard deviation of slopes along a horizontal vector, times its length, both along and across the wind.
+/// sqrt 2 times the standard deviation of slopes along a horizontal vector (Beckmann's alpha), times its length; all in the wind's
+/// axes.
 #[inline(always)]
 pub(crate) fn spread<T: Real>([u, c]: [T; 2], [sigma_u, sigma_c]: [T; 2]) -> T {
     let (u, c) = (u * sigma_u, c * sigma_c);
@@ -555,7 +556,7 @@ impl Facets<f64> {
         DVec2::new(self.sigma_u, self.sigma_c) * widened
     }
 
-    /// Whether [`Facets::masking_bound`] matters: scanned over both elevations, with the largest
+    /// Whether [`Facets::masked_area`]'s bound matters: scanned over both elevations, with the largest
     /// reflectance (forward) and the rougher azimuth. Above w* = 9 cm/s (for an infinite footprint; below
     /// for smaller ones) it does not, and costs nothing.
     pub(crate) fn needs_bound(&self) -> bool {

@@ -11,7 +11,7 @@ pub fn sigma(w10: f64) -> f64 {
     (5.34e-3 * w10).sqrt()
 }
 
-/// `cos Lambda` of an angle to the normal, where `sigma_sin` is sqrt 2 times the slope's standard deviation along the direction
+/// `cos Lambda` (F of Eq. 66) of an angle to the normal, where `sigma_sin` is sqrt 2 times the slope's standard deviation along the direction
 /// times the sine.
 #[inline(always)]
 pub fn cos_lambda<T: Real>(cos: T, sigma_sin: T) -> T {

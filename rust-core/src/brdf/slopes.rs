@@ -1,4 +1,4 @@
-//! Slopes of the waves shorter than the footprint: variances (Eqs. 74-77) and density (Eqs. 72-73, 78-79).
+//! Slopes of the waves shorter than the footprint: variances (Eqs. 74-77), skewness and kurtosis (Eq. 78).
 
 use crate::numeric::Real;
 use crate::sea::WindProfile;
@@ -130,7 +130,7 @@ impl GramCharlier<f64> {
 }
 
 impl<T: Real> GramCharlier<T> {
-    /// The correction, without its clamp to what is not negative, for tilts in widths.
+    /// The series of Eq. 78, not clamped to 0, for tilts in widths.
     #[inline(always)]
     pub fn eval(&self, u: T, c: T) -> T {
         let [one, uu, cc, u4, uucc, c4] = self.even;

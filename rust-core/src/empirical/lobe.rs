@@ -166,8 +166,7 @@ impl EmpiricalLobe {
         &self.grid
     }
 
-    /// f, 1/sr (Eq. 90), for unit vectors to source and observer; 0 at or below the horizon, not a number where a coordinate
-    /// is none.
+    /// f, 1/sr (Eq. 90), for unit vectors to source and observer; 0 at or below the horizon, NaN in, NaN out.
     pub fn eval<T: Gridded>(&self, i: Vec3<T>, o: Vec3<T>) -> T {
         self.eval_parts(i, o, Parts::ALL)
     }
@@ -195,7 +194,7 @@ impl EmpiricalLobe {
                 let facets = fall * moments.facets;
                 let moments = Moments { facets, facets2: fall * fall * moments.facets2, ..moments };
                 let [mean, std] = moments.brdf(rho, self.sampler.whitecap_brdf);
-                // Of what facets reflect, by the spreads of the lobe's width and offset.
+                // Eq. 91: of what facets reflect, by the spreads of the lobe's width and offset.
                 let (wider, aside) = (2.0 * x * x * u_sigma / sigma, 2.0 * x * u_delta / sigma);
                 [mean, std.hypot(rho * facets * wider.hypot(aside))]
             }

@@ -106,7 +106,7 @@ impl EnsembleLobe {
         Ok(Self { sampler, waves: slopes.map(|slopes| MeanLobe::new(&slopes, water, wind)) })
     }
 
-    /// f, 1/sr, for unit vectors to source and observer; 0 at or below the horizon, not a number where a coordinate is none.
+    /// f, 1/sr, for unit vectors to source and observer; 0 at or below the horizon, NaN in, NaN out.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3]) -> f64 {
         self.eval_parts(i, o, Parts::ALL)
     }

@@ -86,7 +86,7 @@ impl InstanceLobe {
     }
 
     /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon,
-    /// not a number where a coordinate is none.
+    /// NaN in, NaN out.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2]) -> f64 {
         let local = self.local(place, None);
         let lobe = self.water.lobe.with_whitecaps(local.whitecap);
