@@ -2,7 +2,7 @@
 
 use prob_water::batch::{Columns, Coordinates, Rows, SampleColumns, Sources};
 use prob_water::simd::SimdLevel;
-use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, SlopeStatistics, Wind};
+use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::f64::consts::TAU;
 
@@ -70,7 +70,6 @@ fn seas() -> Vec<Parameters> {
                 Parameters { slope_measure: SlopeMeasure::Slope, fresnel: Fresnel::Exact, ..oblique },
                 Parameters { readings: Readings::AsPrinted, shadowing: false, ior: Some(1.1), ..plain },
                 Parameters { gram_charlier: false, ior: Some(4.0), ..oblique },
-                Parameters { slopes: SlopeStatistics::BreonHenriot, ..oblique },
             ]);
         }
     }
