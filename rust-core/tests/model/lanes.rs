@@ -2,7 +2,7 @@
 
 use prob_water::batch::{Columns, Coordinates, Rows, SampleColumns, Sources};
 use prob_water::simd::SimdLevel;
-use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, Wind};
+use prob_water::{Error, Fresnel, Lobe, Parameters, Readings, Sample, SlopeMeasure, SlopeStatistics, Wind};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use std::f64::consts::TAU;
 
@@ -73,6 +73,10 @@ fn seas() -> Vec<Parameters> {
             ]);
         }
     }
+    // Behind the others, which keep their random rows.
+    let henriot = |sea: &Parameters| Parameters { slopes: SlopeStatistics::BreonHenriot, ..*sea };
+    let others: Vec<_> = seas.iter().skip(1).step_by(5).map(henriot).collect();
+    seas.extend(others);
     seas
 }
 
