@@ -13,7 +13,6 @@ SWITCHES = [
     {},
     {"slope_measure": "slope", "fresnel": "exact"},
     {"shadowing": False, "gram_charlier": False},
-    {"slopes": "breon_henriot", "slope_budget": "closed"},
     {"readings": "as_printed"},
     {"whitecaps": True, "ior": 1.1, "wind_direction": -140.0},
     {"wavelength": 12.5, "fresnel": "exact"},  # Water absorbs there.
