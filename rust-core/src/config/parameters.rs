@@ -2,7 +2,8 @@
 
 use crate::brdf::{Fresnel, Lobe, SlopeMeasure, WindAxes};
 use crate::error::{Error, Warning};
-use crate::sea::{Salinity, Wind, WindProfile, whitecap};
+use crate::sea::whitecap::WhitecapOnset;
+use crate::sea::{Salinity, Wind, WindProfile};
 
 /// How the report's defective equations are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -119,6 +120,8 @@ pub struct Parameters {
     pub readings: Readings,
     /// Whitecaps blended in.
     pub whitecaps: bool,
+    /// Where on drawn waves they stand.
+    pub whitecap_onset: WhitecapOnset,
     /// Shadowing function applied.
     pub shadowing: bool,
     /// Skewness and kurtosis applied.
@@ -148,6 +151,7 @@ impl Default for Parameters {
             slope_measure: SlopeMeasure::Angle,
             readings: Readings::Corrected,
             whitecaps: true,
+            whitecap_onset: WhitecapOnset::Calibrated,
             shadowing: true,
             gram_charlier: true,
         }
@@ -225,15 +229,6 @@ impl Water {
         .into_iter()
         .flatten()
         .collect()
-    }
-
-    /// Probability of a whitecap (Eqs. 53-54) where a drawn surface has a vertical acceleration in m/s^2; 0 where
-    /// whitecaps are switched off.
-    pub fn whitecap_probability(&self, acceleration: f64) -> f64 {
-        if !self.parameters.whitecaps {
-            return 0.0;
-        }
-        whitecap::probability(self.wind.friction_velocity, 100.0 * acceleration)
     }
 
     /// The same sea under a wind from another azimuth, in degrees.

@@ -7,6 +7,7 @@ use super::parameters::{
 use crate::brdf::fresnel::WAVELENGTHS;
 use crate::brdf::{Fresnel, SlopeMeasure};
 use crate::error::{Error, refuse};
+use crate::sea::whitecap::WhitecapOnset;
 use crate::sea::{Salinity, Wind, wind};
 
 /// A parameter: what documentation and help show of it, and how it is read and written.
@@ -109,7 +110,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 25] = [
+pub const ENTRIES: [Entry; 26] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -362,6 +363,17 @@ pub const ENTRIES: [Entry; 25] = [
         access: field!(flag, whitecaps),
     },
     Entry {
+        name: "whitecap_onset",
+        unit: "",
+        default: "calibrated",
+        allowed: "calibrated, ramp, step",
+        help: "where on drawn waves whitecaps stand: so that they cover the fraction of Eq. 51 (`calibrated`), or by Eqs. 53-54 of \
+               the drawn waves alone, below w* = 24.9 cm/s with a step at -0.39 g (`ramp`) or at -alpha g (`step`)",
+        surfaces: &DRAWN,
+        kind: Kind::Word,
+        access: field!(word, whitecap_onset, WHITECAP_ONSETS),
+    },
+    Entry {
         name: "shadowing",
         unit: "",
         default: "true",
@@ -482,6 +494,11 @@ const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Av
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
+const WHITECAP_ONSETS: [(&str, WhitecapOnset); 3] = [
+    ("calibrated", WhitecapOnset::Calibrated),
+    ("ramp", WhitecapOnset::Ramp),
+    ("step", WhitecapOnset::Step),
+];
 const READINGS: [(&str, Readings); 2] =
     [("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)];
 
@@ -654,6 +671,7 @@ mod tests {
             ("slope_measure", Value::Text("slope".into())),
             ("readings", Value::Text("as_printed".into())),
             ("whitecaps", Value::Flag(false)),
+            ("whitecap_onset", Value::Text("step".into())),
             ("shadowing", Value::Flag(false)),
             ("gram_charlier", Value::Flag(false)),
         ];
@@ -713,6 +731,7 @@ mod tests {
                 slope_measure: SlopeMeasure::Slope,
                 readings: Readings::AsPrinted,
                 whitecaps: false,
+                whitecap_onset: WhitecapOnset::Ramp,
                 shadowing: false,
                 gram_charlier: false,
             };

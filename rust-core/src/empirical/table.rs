@@ -272,7 +272,7 @@ pub(crate) struct Slice {
 }
 
 /// Parameters that a table has only one value of.
-pub(crate) const SHARED: [&str; 9] = [
+pub(crate) const SHARED: [&str; 10] = [
     "components",
     "depth",
     "fetch",
@@ -280,6 +280,7 @@ pub(crate) const SHARED: [&str; 9] = [
     "slope_measure",
     "readings",
     "whitecaps",
+    "whitecap_onset",
     "shadowing",
     "gram_charlier",
 ];

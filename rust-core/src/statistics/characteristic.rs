@@ -9,9 +9,10 @@
 //!
 //! Everything is even in both slopes (upwind and crosswind) and in the acceleration.
 
+use super::breaking::Acceleration;
 use crate::numeric::quadrature::{gauss_legendre, panels};
 use crate::sea::spectrum::spreading;
-use crate::surface::Waves;
+use crate::surface::{Component as Wave, Waves};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
@@ -38,6 +39,18 @@ pub(crate) fn variances(waves: &Waves) -> [f64; 3] {
     Component::new(waves).map_or([0.0; 3], |component| component.variances(waves.components as f64))
 }
 
+/// The acceleration of a sum of waves that are drawn already, over places and times.
+pub(crate) fn accelerations(waves: &[Wave]) -> Acceleration<impl Fn(&[f64]) -> Vec<f64>> {
+    let amplitudes: Vec<f64> = waves.iter().map(|c| c.amplitude * c.frequency * c.frequency).collect();
+    Acceleration {
+        variance: waves.iter().map(Wave::acceleration_variance).sum(),
+        bound: amplitudes.iter().sum(),
+        characteristic: move |frequencies: &[f64]| {
+            frequencies.iter().map(|r| amplitudes.iter().map(|a| bessel(a * r)).product()).collect()
+        },
+    }
+}
+
 /// No drawn sea is steeper.
 pub(crate) fn steepest(waves: &Waves) -> f64 {
     Component::new(waves).map_or(0.0, |component| {
@@ -49,13 +62,27 @@ pub(crate) fn steepest(waves: &Waves) -> f64 {
 impl Component {
     /// `None` where there are no waves.
     pub fn new(waves: &Waves) -> Option<Self> {
+        Self::seen(waves, &[], |wave| wave)
+    }
+
+    /// Of waves that fade, where the footprint in m is this one.
+    pub fn fading(waves: &Waves, footprint: f64) -> Option<Self> {
+        let starts = [-0.5f64, 0.5].map(|octave| 0.01 * PI / footprint * octave.exp2());
+        Self::seen(waves, &starts, |wave| wave.seen_at(footprint))
+    }
+
+    /// With amplitudes that change, smoothly but for some wave numbers in rad/cm.
+    fn seen(waves: &Waves, kinks: &[f64], seen: impl Fn(Wave) -> Wave) -> Option<Self> {
         let [low, high] = waves.log_range?;
         let rule = gauss_legendre(WAVE_NUMBERS);
         let mut wave_numbers = vec![];
-        for piece in waves.spectrum.pieces(low.exp(), high.exp()).windows(2) {
+        let mut pieces = waves.spectrum.pieces(low.exp(), high.exp());
+        pieces.extend(kinks.iter().filter(|k| (low.exp()..high.exp()).contains(*k)));
+        pieces.sort_unstable_by(f64::total_cmp);
+        for piece in pieces.windows(2) {
             let (start, end) = (piece[0].ln(), piece[1].ln());
             wave_numbers.extend(panels(&rule, start, end, end - start).into_iter().map(|(log_k, width)| {
-                let component = waves.component(log_k.exp(), 0.0, waves.wind_azimuth);
+                let component = seen(waves.component(log_k.exp(), 0.0, waves.wind_azimuth));
                 let amplitude = component.amplitude / spreading(0.0).sqrt();
                 let acceleration = amplitude * component.frequency.powi(2);
                 [width / (high - low), amplitude * component.wave_number, acceleration]
@@ -92,6 +119,19 @@ impl Component {
     /// Bounds of a sum of `count`.
     pub fn bounds(&self, count: f64) -> [f64; 3] {
         self.bounds.map(|b| count * b)
+    }
+
+    /// The acceleration of a sum of `count`.
+    pub fn sum_of_accelerations(&self, count: f64) -> Acceleration<impl Fn(&[f64]) -> Vec<f64>> {
+        Acceleration {
+            variance: self.variances(count)[2],
+            bound: self.bounds(count)[2],
+            characteristic: move |frequencies: &[f64]| {
+                let mut values = self.acceleration(frequencies);
+                values.iter_mut().for_each(|c| *c = c.powi(count as i32));
+                values
+            },
+        }
     }
 
     /// Characteristic function of the slope at the products of these frequencies upwind and crosswind, row by row.

@@ -2,7 +2,7 @@
 
 use crate::common::{direction, dot, water};
 use prob_water::surface::{Draws, InstanceRng};
-use prob_water::{Engagement, Ensemble, Exact, Surface, Water, whitecap};
+use prob_water::{Engagement, Ensemble, Exact, Surface, Water};
 use rayon::prelude::*;
 
 fn sea(friction_velocity: f64, footprint: f64, components: u32) -> Water {
@@ -44,7 +44,7 @@ const BATCH: u64 = 2000;
 /// Weighted mean and its standard error, of f, f^2 and f cos, for every view.
 fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec<[(f64, f64); 3]> {
     let waves = water.waves();
-    let w = water.wind.friction_velocity;
+    let onset = water.whitecap_onset();
     let zero = || Sums {
         values: vec![[0.0; 3]; views.len()],
         squares: vec![[0.0; 3]; views.len()],
@@ -59,7 +59,7 @@ fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec
             let point = waves.surface(numbers, 0.0).point([0.0; 2]);
             let n = point.normal();
             let area = (dot(n, source) / n[2]).max(0.0);
-            let foam = chance < whitecap::probability(w, 100.0 * point.acceleration);
+            let foam = onset.is_some_and(|onset| chance < onset.probability(point.acceleration));
             sums.area += area;
             sums.area2 += area * area;
             if area <= 0.0 {

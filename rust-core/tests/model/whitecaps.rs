@@ -3,26 +3,28 @@
 use crate::common::water;
 use prob_water::statistics::Samples;
 use prob_water::surface::{Draws, InstanceRng};
+use prob_water::whitecap::WhitecapOnset;
 use prob_water::{Aim, Engagement, Ensemble, Surface, Water, WhitecapMode, whitecap};
 use rayon::prelude::*;
 
-fn sea(w: f64, footprint: f64, components: u32) -> Water {
+fn sea(w: f64, footprint: f64, components: u32, onset: WhitecapOnset) -> Water {
     water(w, |p| {
         p.surface = Surface::Instance;
         p.footprint = Some(footprint);
         p.components = components;
         p.whitecaps = true;
+        p.whitecap_onset = onset;
     })
 }
 
-/// The mean probability of a whitecap (Eqs. 53-54) on drawn surfaces over Eq. 51's fraction, and its standard error.
+/// The mean probability of a whitecap on drawn surfaces over Eq. 51's fraction, and its standard error.
 fn over_eq_51(sea: &Water, instances: u64) -> [f64; 2] {
     const BATCH: u64 = 1000;
-    let (w, waves) = (sea.wind.friction_velocity, sea.waves());
+    let (waves, onset) = (sea.waves(), sea.whitecap_onset().unwrap());
     let probability = |instance| {
         let mut numbers = InstanceRng::new(Draws::Random, 9, instance);
         numbers.next();
-        whitecap::probability(w, 100.0 * waves.surface(numbers, 0.0).point([0.0; 2]).acceleration)
+        onset.probability(waves.surface(numbers, 0.0).point([0.0; 2]).acceleration)
     };
     // Batches are summed in order, so that sums do not depend on threads.
     let batches: Vec<[f64; 2]> = (0..instances / BATCH)
@@ -37,11 +39,34 @@ fn over_eq_51(sea: &Water, instances: u64) -> [f64; 2] {
     [mean / expected, ((square - mean * mean) / instances as f64).sqrt() / expected]
 }
 
+#[test]
+#[ignore = "draft"]
+fn draft() {
+    for w in [2.0, 5.0, 8.0, 12.0, 24.0, 25.0, 40.0, 56.0, 62.9, 120.0, 180.0, 238.0] {
+        let f = whitecap::fraction(sea(w, 1.0, 5, WhitecapOnset::Calibrated).wind.w10);
+        println!("w* {w}: F {f:.3e} s {:.3} m/s2", whitecap::deviation(w, f.min(0.4)));
+        for d in [0.02, 0.05, 0.1, 0.15, 0.3, 1.0, 10.0] {
+            print!("  D {d}:");
+            for m in [1, 2, 3, 5, 20, 100] {
+                let sea = sea(w, d, m, WhitecapOnset::Calibrated);
+                let start = std::time::Instant::now();
+                let onset = sea.whitecap_onset();
+                let time = start.elapsed().as_secs_f64() * 1e3;
+                if let Some(onset) = onset {
+                    let [r, e] = over_eq_51(&sea, if m > 20 { 20_000 } else { 100_000 });
+                    print!(" {r:.3}+-{e:.3} ({:?} {time:.2}ms)", onset);
+                }
+            }
+            println!();
+        }
+    }
+}
+
 /// Fig. 3: the mean of Eq. 53 over drawn surfaces follows Eq. 51 within 20 % from w* = 24 to 56, D = 0.10 m.
 #[test]
 fn whitecap_fraction() {
     for w in [24.0, 32.0, 40.0, 48.0, 56.0] {
-        let [ratio, error] = over_eq_51(&sea(w, 0.10, 5), 400_000);
+        let [ratio, error] = over_eq_51(&sea(w, 0.10, 5, WhitecapOnset::Ramp), 400_000);
         assert!((ratio - 1.0).abs() + 4.0 * error < 0.2, "w* {w}: {ratio} +- {error}");
     }
 }
@@ -64,7 +89,7 @@ fn whitecaps_follow_the_footprint() {
     pins.extend([(16.0, 0.15, 5, 0.891), (16.0, 0.15, 20, 1.378), (16.0, 0.15, 100, 1.541)]);
     for (w, footprint, components, pin) in pins {
         let [found, error] =
-            over_eq_51(&sea(w, footprint, components), if components > 20 { 200_000 } else { 400_000 });
+            over_eq_51(&sea(w, footprint, components, WhitecapOnset::Ramp), if components > 20 { 200_000 } else { 400_000 });
         let allowed = 4.0 * error + 0.01 * pin;
         assert!(
             (found - pin).abs() <= allowed,
@@ -77,7 +102,7 @@ fn whitecaps_follow_the_footprint() {
 
 /// A strong wind's whitecaps under a vertical beam, at times in s.
 fn under_a_beam(times: &[f64], presence: WhitecapMode, instances: u64) -> Samples {
-    let mut water = sea(56.0, 0.15, 5);
+    let mut water = sea(56.0, 0.15, 5, WhitecapOnset::Ramp);
     water.parameters.instances = instances;
     let ensemble = Ensemble { presence, ..Ensemble::new(&water).unwrap() };
     let beam = |time: &f64| {
