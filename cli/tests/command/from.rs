@@ -2,6 +2,7 @@
 
 use crate::{refuse, succeed};
 use exr::prelude::*;
+use prob_water::whitecap::WhitecapOnset;
 use prob_water::{
     Average, Fresnel, OffPlaneModel, Parameters, Readings, Salinity, SlopeMeasure, Surface, Wind,
 };
@@ -66,6 +67,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         slope_measure: SlopeMeasure::Slope,
         readings: Readings::AsPrinted,
         whitecaps: false,
+        whitecap_onset: WhitecapOnset::Step,
         shadowing: false,
         gram_charlier: false,
     }

@@ -272,7 +272,7 @@ pub(crate) struct Slice {
 }
 
 /// Parameters that a table has only one value of.
-pub(crate) const SHARED: [&str; 10] = [
+pub(crate) const SHARED: [&str; 9] = [
     "components",
     "depth",
     "fetch",
@@ -280,14 +280,14 @@ pub(crate) const SHARED: [&str; 10] = [
     "slope_measure",
     "readings",
     "whitecaps",
-    "whitecap_onset",
     "shadowing",
     "gram_charlier",
 ];
 
-/// What else it was made with: how many points were drawn and which, and of which water the reflectance was that its
-/// numbers do not have.
-pub(crate) const MADE_WITH: [&str; 6] = ["instances", "seed", "wavelength", "ior", "extinction", "fresnel"];
+/// What else it was made with: how many points were drawn and which, of which water the reflectance was that its numbers do
+/// not have, and where whitecaps stood.
+pub(crate) const MADE_WITH: [&str; 7] =
+    ["instances", "seed", "wavelength", "ior", "extinction", "fresnel", "whitecap_onset"];
 
 /// The parameters that a table tells, by name; the others have no part in it.
 pub(crate) fn kept(value: impl Fn(&str) -> Option<Value>) -> Result<Parameters, Error> {

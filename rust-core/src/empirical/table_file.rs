@@ -156,7 +156,10 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {
-        Some(match parameters.get(name)? {
+        // Files that do not tell are of Eqs. 53-54 alone.
+        let ramp = || (name == "whitecap_onset").then(|| Value::Text("ramp".into()));
+        let Some(told) = parameters.get(name) else { return ramp() };
+        Some(match told {
             serde_json::Value::Bool(x) => Value::Flag(*x),
             serde_json::Value::Number(x) => Value::Number(x.as_f64()?),
             serde_json::Value::String(x) => Value::Text(x.clone()),

@@ -6,6 +6,7 @@ use crate::config::Water;
 use crate::error::Error;
 use crate::numeric::real::Extended;
 use crate::numeric::{Real, Vec3};
+use super::OnsetTable;
 use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
 use crate::surface::{Component, Surface, Waves};
@@ -18,6 +19,7 @@ pub struct InstanceLobe {
     components: Vec<Component>,
     surface: Surface,
     onset: Option<Onset<f64>>,
+    onsets: Option<OnsetTable<f64>>,
 }
 
 /// The sea at a place.
@@ -35,7 +37,7 @@ impl InstanceLobe {
     /// # Errors
     /// [`Error::Surface`] where the surface is not [`crate::Surface::Instance`].
     pub fn new(water: &Water) -> Result<Self, Error> {
-        Self::of(water, water.waves(), water.whitecap_onset())
+        Self::of(water, water.waves(), water.whitecap_onset(), None)
     }
 
     /// The same for footprints that change from place to place, from the parameters' one upwards: with the waves that
@@ -44,10 +46,16 @@ impl InstanceLobe {
     /// # Errors
     /// As [`InstanceLobe::new`].
     pub fn fading(water: &Water) -> Result<Self, Error> {
-        Self::of(water, water.fading_waves(), water.fading_whitecap_onset(water.footprint))
+        let onset = water.fading_whitecap_onset(water.footprint);
+        Self::of(water, water.fading_waves(), onset, OnsetTable::new(water))
     }
 
-    fn of(water: &Water, waves: Waves, onset: Option<Onset<f64>>) -> Result<Self, Error> {
+    fn of(
+        water: &Water,
+        waves: Waves,
+        onset: Option<Onset<f64>>,
+        onsets: Option<OnsetTable<f64>>,
+    ) -> Result<Self, Error> {
         let water = water.on(&[crate::config::Surface::Instance])?;
         let sea = Ensemble { waves, onset, ..Ensemble::new(&water)? };
         let components: Vec<_> = sea.components(0).1.collect();
@@ -55,7 +63,7 @@ impl InstanceLobe {
         // None can stand where all crests together are not steep enough.
         let steepest: f64 = components.iter().map(|c| c.amplitude * c.frequency * c.frequency).sum();
         let onset = onset.filter(|onset| onset.probability(-steepest) > 0.0);
-        Ok(Self { water, components, surface, onset })
+        Ok(Self { water, components, surface, onset, onsets })
     }
 
     /// The waves that make the sea.
@@ -74,13 +82,23 @@ impl InstanceLobe {
         self.onset
     }
 
+    /// The onset for footprints that change from place to place, where it follows them.
+    pub fn whitecap_onsets(&self) -> Option<&OnsetTable<f64>> {
+        self.onsets.as_ref()
+    }
+
     /// The sea at a place in m. With a footprint in m the waves too short for it are left to the facets.
     pub fn local(&self, place: [f64; 2], footprint: Option<f64>) -> LocalSea {
         let point = match footprint {
             None => self.surface.point(place),
             Some(footprint) => self.surface.point_within(place, footprint),
         };
-        LocalSea { normal: point.normal(), whitecap: self.onset.map_or(0.0, |onset| onset.probability(point.acceleration)) }
+        let onset = match (&self.onsets, footprint) {
+            (Some(onsets), Some(footprint)) => Some(onsets.at(footprint.log2())),
+            _ => self.onset,
+        };
+        let whitecap = onset.map_or(0.0, |onset| onset.probability(point.acceleration));
+        LocalSea { normal: point.normal(), whitecap }
     }
 
     /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon,

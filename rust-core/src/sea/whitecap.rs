@@ -99,6 +99,11 @@ impl Onset<f64> {
         self.sharpness.map_or(0.0, |sharpness| FRAC_1_SQRT_2 / sharpness)
     }
 
+    /// Its numbers, for tables of onsets with waves that are not drawn.
+    pub(crate) fn numbers(&self) -> [f64; 3] {
+        [self.none, self.fall, self.sharpness.unwrap_or(f64::INFINITY)]
+    }
+
     /// The same of accelerations to which a shift in m/s^2 is added.
     pub fn shifted(self, shift: f64) -> Self {
         Self { none: self.none - shift, ..self }
@@ -115,6 +120,11 @@ impl Onset<f64> {
 }
 
 impl<T: Real> Onset<T> {
+    /// From [`Onset::numbers`].
+    pub(crate) fn of_numbers([none, fall, sharpness]: [T; 3]) -> Self {
+        Self { none, fall, sharpness: Some(sharpness) }
+    }
+
     /// Probability of a whitecap at a vertical acceleration of the drawn waves in m/s^2.
     pub fn probability(&self, acceleration: T) -> T {
         let (zero, one) = (T::of(0.0), T::of(1.0));
@@ -153,6 +163,47 @@ mod tests {
                 let acceleration = 1.001 * f64::from(k);
                 let expected = probability(friction_velocity, acceleration);
                 assert!((onset.probability(0.01 * acceleration) - expected).abs() < 1e-12);
+            }
+        }
+    }
+
+    /// The onset with a residual is the mean of the sharp one's probability over a Gaussian, and float32 keeps its digits.
+    #[test]
+    fn residual_is_the_mean_over_a_gaussian() {
+        for (friction_velocity, residual) in
+            [(12.0, 0.5), (24.0, 2.0), (25.0, 1.0), (40.0, 0.05), (56.0, 0.6), (120.0, 3.0), (238.0, 6.0)]
+        {
+            let sharp = Onset::new(friction_velocity, WhitecapOnset::Ramp);
+            let onset = Onset::with_residual(friction_velocity, residual);
+            let single: Onset<f32> = onset.cast();
+            let widened = 1.0 < LEAST_WIDTH * residual * sharp.fall;
+            for k in -40..=40 {
+                let acceleration = 0.25 * f64::from(k);
+                let count = 100_000;
+                let mean: f64 = (0..count)
+                    .map(|i| {
+                        let z = 16.0 * ((f64::from(i) + 0.5) / f64::from(count) - 0.5);
+                        let density = (-0.5 * z * z).exp() / (2.0 * PI).sqrt() * 16.0 / f64::from(count);
+                        density * sharp.probability(acceleration + residual * z)
+                    })
+                    .sum();
+                let found = onset.probability(acceleration);
+                // Nodes are 1.6e-4 apart: steps are summed to 3e-5.
+                let allowed = if widened { 6e-5 } else { 1e-8 };
+                assert!((found - mean).abs() < allowed, "{friction_velocity} {residual} {acceleration}: {found} {mean}");
+                let single = f64::from(single.probability(acceleration as f32));
+                assert!((found - single).abs() < 4e-6, "{friction_velocity} {acceleration}: {found} {single}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_sea_of_this_deviation_has_the_fraction() {
+        for friction_velocity in [3.0, 12.0, 24.0, 56.0, 120.0, 160.0] {
+            for fraction in [1e-6, 1e-3, 0.1, 0.4] {
+                let deviation = deviation(friction_velocity, fraction);
+                let found = Onset::with_residual(friction_velocity, deviation).probability(0.0);
+                assert!((found / fraction - 1.0).abs() < 1e-9, "{friction_velocity} {fraction}: {found}");
             }
         }
     }

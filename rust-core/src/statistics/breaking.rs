@@ -16,6 +16,8 @@ use std::f64::consts::PI;
 const RAREST: f64 = 1e-7;
 /// The whole sea's acceleration is that of this fraction at most: towards a half it would pass all bounds.
 const MOST: f64 = 0.4;
+/// Of the whole sea's standard deviation so much is not drawn at least: probabilities stay smooth where drawn waves have it all.
+const LEAST_RESIDUAL: f64 = 0.02;
 /// What a mean over accelerations needs.
 const CALIBRATION: Resolution = Resolution { end: 10.0, highest: 40.0, negligible: 1e-10 };
 
@@ -53,7 +55,7 @@ impl Water {
     /// The same on the sum of as many waves as are drawn; of none the sea is level.
     pub(crate) fn onset_on(&self, component: Option<&Component>) -> Option<Onset<f64>> {
         let count = f64::from(self.parameters.components);
-        match component {
+        match component.filter(|component| component.variances(count)[2] > 0.0) {
             Some(component) => self.onset_of(&component.sum_of_accelerations(count)),
             None => self.onset_of(&Acceleration {
                 variance: 0.0,
@@ -81,8 +83,8 @@ impl<F: Fn(&[f64]) -> Vec<f64>> Acceleration<F> {
     /// The onset whose mean is a fraction, at a friction velocity in cm/s.
     fn calibrated(&self, friction_velocity: f64, fraction: f64) -> Onset<f64> {
         let all = deviation(friction_velocity, fraction.min(MOST));
-        let onset =
-            Onset::with_residual(friction_velocity, (all * all - self.variance).max(0.0).sqrt());
+        let residual = (all * all - self.variance).max((LEAST_RESIDUAL * all).powi(2)).sqrt();
+        let onset = Onset::with_residual(friction_velocity, residual);
         let (frequencies, values) = self.spectrum(onset.residual(), &CALIBRATION);
         // A shift by so much moves all accelerations past both ends.
         let [sure, none] = onset.ends();
