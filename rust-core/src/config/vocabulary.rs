@@ -495,11 +495,8 @@ const AVERAGES: [(&str, Average); 2] = [("power", Average::Power), ("report", Av
 const WATERS: [(&str, Salinity); 2] = [("ocean", Salinity::Ocean), ("fresh", Salinity::Fresh)];
 const FRESNELS: [(&str, Fresnel); 2] = [("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 const MEASURES: [(&str, SlopeMeasure); 2] = [("angle", SlopeMeasure::Angle), ("slope", SlopeMeasure::Slope)];
-const WHITECAP_ONSETS: [(&str, WhitecapOnset); 3] = [
-    ("calibrated", WhitecapOnset::Calibrated),
-    ("ramp", WhitecapOnset::Ramp),
-    ("step", WhitecapOnset::Step),
-];
+const WHITECAP_ONSETS: [(&str, WhitecapOnset); 3] =
+    [("calibrated", WhitecapOnset::Calibrated), ("ramp", WhitecapOnset::Ramp), ("step", WhitecapOnset::Step)];
 const READINGS: [(&str, Readings); 2] =
     [("corrected", Readings::Corrected), ("as_printed", Readings::AsPrinted)];
 

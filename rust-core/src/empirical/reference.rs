@@ -118,7 +118,13 @@ impl ReferenceModel {
     pub fn turned(&self, degrees: f64) -> Self {
         let water = self.water.turned(degrees);
         let exact = self.exact.turned(degrees);
-        Self { water, waves: water.waves(), onset: self.onset, exact, baseline: self.baseline.turned(degrees) }
+        Self {
+            water,
+            waves: water.waves(),
+            onset: self.onset,
+            exact,
+            baseline: self.baseline.turned(degrees),
+        }
     }
 
     /// The numbers for an angle of incidence, looked at from angles theta_r; radians. The source stands towards -x,

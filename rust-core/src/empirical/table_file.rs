@@ -231,6 +231,7 @@ mod tests {
     use super::*;
     use crate::config::{Parameters, Surface};
     use crate::empirical::table::Plan;
+    use crate::sea::whitecap::WhitecapOnset;
 
     fn small() -> Table {
         let sea = Parameters {
@@ -311,7 +312,11 @@ mod tests {
     fn the_standard_table_is_what_its_documentation_says() {
         let table = Table::standard();
         assert_eq!(table.grid, Grid::default());
-        let made_with = Parameters { instances: crate::empirical::table::INSTANCES, ..Parameters::default() };
+        let made_with = Parameters {
+            instances: crate::empirical::table::INSTANCES,
+            whitecap_onset: WhitecapOnset::Ramp,
+            ..Parameters::default()
+        };
         let made_with = Plan::new(&made_with, &Grid::default()).unwrap();
         assert!(table.to_bytes() == STANDARD, "written anew the file is another");
         // Of all its rows one that takes little, and one where drawn surfaces matter.

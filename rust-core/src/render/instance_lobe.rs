@@ -1,12 +1,12 @@
 //! The BRDF of a level surface that reflects, place by place, as one drawn sea does: `surface = "instance"`.
 
+use super::OnsetTable;
 use crate::brdf::lobe::{cosine, up};
 use crate::brdf::{Lobe, Parts};
 use crate::config::Water;
 use crate::error::Error;
 use crate::numeric::real::Extended;
 use crate::numeric::{Real, Vec3};
-use super::OnsetTable;
 use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
 use crate::surface::{Component, Surface, Waves};

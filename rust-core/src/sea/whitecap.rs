@@ -190,9 +190,15 @@ mod tests {
                 let found = onset.probability(acceleration);
                 // Nodes are 1.6e-4 apart: steps are summed to 3e-5.
                 let allowed = if widened { 6e-5 } else { 1e-8 };
-                assert!((found - mean).abs() < allowed, "{friction_velocity} {residual} {acceleration}: {found} {mean}");
+                assert!(
+                    (found - mean).abs() < allowed,
+                    "{friction_velocity} {residual} {acceleration}: {found} {mean}"
+                );
                 let single = f64::from(single.probability(acceleration as f32));
-                assert!((found - single).abs() < 4e-6, "{friction_velocity} {acceleration}: {found} {single}");
+                assert!(
+                    (found - single).abs() < 4e-6,
+                    "{friction_velocity} {acceleration}: {found} {single}"
+                );
             }
         }
     }

@@ -1,12 +1,13 @@
 //! Whitecaps of drawn waves (Eqs. 52-54): how many there are against Eq. 51, and how long they last.
 
 use crate::common::water;
+use prob_water::brdf::Parts;
 use prob_water::statistics::Samples;
 use prob_water::surface::{Draws, InstanceRng};
-use prob_water::brdf::Parts;
 use prob_water::whitecap::WhitecapOnset;
 use prob_water::{
-    Aim, Average, Engagement, Ensemble, EnsembleLobe, Exact, Layout, Mesh, Surface, Water, WhitecapMode, whitecap,
+    Aim, Average, Engagement, Ensemble, EnsembleLobe, Exact, InstanceLobe, Layout, Mesh, OnsetTable,
+    RealisedSurface, Surface, Water, WhitecapMode, whitecap,
 };
 use rayon::prelude::*;
 
@@ -22,12 +23,19 @@ fn sea(w: f64, footprint: f64, components: u32, onset: WhitecapOnset) -> Water {
 
 /// The mean probability of a whitecap on drawn surfaces over Eq. 51's fraction, and its standard error.
 fn over_eq_51(sea: &Water, instances: u64) -> [f64; 2] {
-    const BATCH: u64 = 1000;
     let (waves, onset) = (sea.waves(), sea.whitecap_onset().unwrap());
+    mean_over_eq_51(sea, instances, |numbers| {
+        onset.probability(waves.surface(numbers, 0.0).point([0.0; 2]).acceleration)
+    })
+}
+
+/// The same of a probability for random numbers.
+fn mean_over_eq_51(sea: &Water, instances: u64, of: impl Fn(InstanceRng) -> f64 + Sync) -> [f64; 2] {
+    const BATCH: u64 = 1000;
     let probability = |instance| {
         let mut numbers = InstanceRng::new(Draws::Random, 9, instance);
         numbers.next();
-        onset.probability(waves.surface(numbers, 0.0).point([0.0; 2]).acceleration)
+        of(numbers)
     };
     // Batches are summed in order, so that sums do not depend on threads.
     let batches: Vec<[f64; 2]> = (0..instances / BATCH)
@@ -85,8 +93,7 @@ fn cover(w: f64, footprint: f64, components: u32, draws: u64, seas: u64) {
     }
 }
 
-/// Winds, footprints and numbers of components between the ends of what follows; draws leave 2 % open, or 6 % where
-/// whitecaps are rare.
+/// A few of the seas of the next test.
 #[test]
 fn calibrated_whitecaps_cover_the_fraction() {
     for (w, footprint, components, draws) in [
@@ -115,6 +122,35 @@ fn calibrated_whitecaps_cover_the_fraction_everywhere() {
     }
 }
 
+/// Where the footprint changes from place to place they cover the fraction at every footprint, also between the rows of the
+/// table of onsets and beyond.
+#[test]
+fn whitecaps_of_fading_waves_cover_the_fraction() {
+    for w in [24.0, 56.0] {
+        let sea = sea(w, 0.1, 20, WhitecapOnset::Calibrated);
+        let (waves, onsets) = (sea.fading_waves(), OnsetTable::new(&sea).unwrap());
+        let instance = InstanceLobe::fading(&sea).unwrap();
+        for footprint in [0.1f64, 0.137, 0.5, 3.0, 1e4] {
+            let onset = onsets.at(footprint.log2());
+            let [ratio, error] = mean_over_eq_51(&sea, 100_000, |numbers| {
+                let seen = waves.components(numbers).map(|c| c.seen_at(footprint));
+                onset.probability(RealisedSurface::new(seen, 0.0).point([0.0; 2]).acceleration)
+            });
+            println!("w* {w} D {footprint}: {ratio:.3} +- {error:.3}");
+            assert!(
+                (ratio - 1.0).abs() < 0.01 + 4.0 * error && error < 0.04,
+                "w* {w} D {footprint}: {ratio} +- {error}"
+            );
+            let local = instance.local([3.0, 4.0], Some(footprint)).whitecap;
+            let seen = instance.components().iter().map(|c| c.seen_at(footprint));
+            let acceleration = RealisedSurface::new(seen, 0.0).point([3.0, 4.0]).acceleration;
+            assert!((local - onset.probability(acceleration)).abs() < 1e-6, "{local}");
+        }
+    }
+    // Eqs. 53-54 of the drawn waves alone are the same everywhere.
+    assert!(OnsetTable::new(&sea(24.0, 0.1, 20, WhitecapOnset::Ramp)).is_none());
+}
+
 /// What whitecaps alone reflect, seen at 75 degrees under a source overhead, is within 10 % the same whatever the footprint.
 #[test]
 fn whitecaps_alone_do_not_follow_the_footprint() {
@@ -129,7 +165,8 @@ fn whitecaps_alone_do_not_follow_the_footprint() {
         println!("D {footprint}: f {all:.3e}, of whitecaps {whitecaps:.3e}");
         found.push(whitecaps);
     }
-    let [low, high] = [found.iter().fold(f64::MAX, |a, b| a.min(*b)), found.iter().fold(0.0, |a: f64, b| a.max(*b))];
+    let [low, high] =
+        [found.iter().fold(f64::MAX, |a, b| a.min(*b)), found.iter().fold(0.0, |a: f64, b| a.max(*b))];
     assert!(high < 1.1 * low, "{found:?}");
 }
 
@@ -198,8 +235,10 @@ fn whitecaps_follow_the_footprint() {
     }
     pins.extend([(16.0, 0.15, 5, 0.891), (16.0, 0.15, 20, 1.378), (16.0, 0.15, 100, 1.541)]);
     for (w, footprint, components, pin) in pins {
-        let [found, error] =
-            over_eq_51(&sea(w, footprint, components, WhitecapOnset::Ramp), if components > 20 { 200_000 } else { 400_000 });
+        let [found, error] = over_eq_51(
+            &sea(w, footprint, components, WhitecapOnset::Ramp),
+            if components > 20 { 200_000 } else { 400_000 },
+        );
         let allowed = 4.0 * error + 0.01 * pin;
         assert!(
             (found - pin).abs() <= allowed,
