@@ -155,6 +155,51 @@ fn falling(ends: [f64; 2], frequencies: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{Parameters, Surface};
+    use crate::sea::Wind;
+    use crate::statistics::characteristic::accelerations;
+    use crate::surface::{Draws, InstanceRng};
+    use std::f64::consts::TAU;
+
+    /// On waves that are drawn already, as a mesh has them, whitecaps cover the fraction over all phases.
+    #[test]
+    fn drawn_waves_have_the_fraction_over_their_phases() {
+        for (w, footprint, components) in
+            [(24.0, 0.3, 5), (40.0, 0.05, 5), (56.0, 0.02, 20), (62.9, 0.15, 100)]
+        {
+            let sea = Parameters {
+                wind: Wind::FrictionVelocity(w),
+                surface: Surface::Instance,
+                footprint: Some(footprint),
+                components,
+                ..Parameters::default()
+            };
+            let water = sea.configure().unwrap();
+            let waves: Vec<_> = water.waves().components(InstanceRng::new(Draws::Stratified, 3, 0)).collect();
+            let onset = water.onset_of(&accelerations(&waves)).unwrap();
+            let mut numbers = InstanceRng::new(Draws::Random, 5, 1);
+            let count = 4_000_000 / waves.len();
+            let (mut sum, mut square) = (0.0, 0.0);
+            for _ in 0..count {
+                let a: f64 = waves
+                    .iter()
+                    .map(|c| c.amplitude * c.frequency.powi(2) * (TAU * numbers.next()).cos())
+                    .sum();
+                let p = onset.probability(a);
+                sum += p;
+                square += p * p;
+            }
+            let mean = sum / count as f64;
+            let error =
+                ((square / count as f64 - mean * mean) / count as f64).sqrt() / water.whitecap_fraction;
+            let ratio = mean / water.whitecap_fraction;
+            println!("w* {w} D {footprint} M {components}: {ratio:.4} +- {error:.4}");
+            assert!(
+                (ratio - 1.0).abs() < 0.005 + 4.0 * error && error < 0.06,
+                "w* {w} D {footprint}: {ratio} +- {error}"
+            );
+        }
+    }
 
     #[test]
     fn falling_is_its_cosine_series() {

@@ -2,6 +2,7 @@
 
 use crate::common::{direction, dot, water};
 use prob_water::surface::{Draws, InstanceRng};
+use prob_water::whitecap::WhitecapOnset;
 use prob_water::{Engagement, Ensemble, Exact, Surface, Water};
 use rayon::prelude::*;
 
@@ -282,7 +283,14 @@ fn distributions() {
         ("fetch 5000, shallow", 40.0, sea(24.0, &|p| (p.fetch, p.depth) = (5e3, 0.5))),
         ("hurricane", 20.0, sea(238.0, &|p| p.footprint = Some(f64::INFINITY))),
         ("hurricane, shallow", 20.0, sea(200.0, &|p| (p.footprint, p.depth) = (Some(5.0), 0.2))),
-        ("hurricane, no depth", 20.0, sea(238.0, &|p| (p.footprint, p.depth) = (Some(5.0), 1e-200))),
+        // Without Eq. 51's fraction, which is 1: there would be nothing but whitecaps.
+        (
+            "hurricane, no depth",
+            20.0,
+            sea(238.0, &|p| {
+                (p.footprint, p.depth, p.whitecap_onset) = (Some(5.0), 1e-200, WhitecapOnset::Ramp);
+            }),
+        ),
         ("slopes", 10.0, sea(40.0, &|p| p.slope_measure = prob_water::SlopeMeasure::Slope)),
         ("as printed", 30.0, sea(16.0, &|p| p.readings = prob_water::Readings::AsPrinted)),
         ("calm", 30.0, sea(0.0, &|_| ())),
