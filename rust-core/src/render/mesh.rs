@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::numeric::root::bisect;
 use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
-use crate::statistics::characteristic::accelerations;
+use crate::statistics::breaking::accelerations;
 use crate::surface::{Component, Draws, Point, Surface as RealisedSurface, WaveSums};
 use rayon::prelude::*;
 use std::fmt;

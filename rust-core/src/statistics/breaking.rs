@@ -6,10 +6,11 @@
 //! Drawn ones may have more than s, and are not Gaussian: so a shift of all accelerations makes the mean over the drawn
 //! waves' distribution, known by its characteristic function, Eq. 51's fraction.
 
-use super::characteristic::Component;
+use super::characteristic::{Component, bessel};
 use crate::config::Water;
 use crate::numeric::root::bisect;
 use crate::sea::whitecap::{Onset, WhitecapOnset, deviation};
+use crate::surface::Component as Wave;
 use std::f64::consts::PI;
 
 /// Fractions below this have no whitecaps.
@@ -41,6 +42,34 @@ pub(crate) struct Acceleration<F> {
     pub characteristic: F,
 }
 
+/// The acceleration of a sum of waves that are drawn already, over places and times.
+pub(crate) fn accelerations(waves: &[Wave]) -> Acceleration<impl Fn(&[f64]) -> Vec<f64>> {
+    let amplitudes: Vec<f64> = waves.iter().map(|c| c.amplitude * c.frequency * c.frequency).collect();
+    Acceleration {
+        variance: waves.iter().map(Wave::acceleration_variance).sum(),
+        bound: amplitudes.iter().sum(),
+        characteristic: move |frequencies: &[f64]| {
+            frequencies.iter().map(|r| amplitudes.iter().map(|a| bessel(a * r)).product()).collect()
+        },
+    }
+}
+
+/// The acceleration of a sum of as many waves.
+pub(crate) fn sum_of_accelerations(
+    component: &Component,
+    count: f64,
+) -> Acceleration<impl Fn(&[f64]) -> Vec<f64>> {
+    Acceleration {
+        variance: component.variances(count)[2],
+        bound: component.bounds(count)[2],
+        characteristic: move |frequencies: &[f64]| {
+            let mut values = component.acceleration(frequencies);
+            values.iter_mut().for_each(|c| *c = c.powi(count as i32));
+            values
+        },
+    }
+}
+
 impl Water {
     /// The onset of whitecaps on drawn waves ([`Water::waves`]); `None` where there are none.
     pub fn whitecap_onset(&self) -> Option<Onset<f64>> {
@@ -56,7 +85,7 @@ impl Water {
     pub(crate) fn onset_on(&self, component: Option<&Component>) -> Option<Onset<f64>> {
         let count = f64::from(self.parameters.components);
         match component.filter(|component| component.variances(count)[2] > 0.0) {
-            Some(component) => self.onset_of(&component.sum_of_accelerations(count)),
+            Some(component) => self.onset_of(&sum_of_accelerations(component, count)),
             None => self.onset_of(&Acceleration {
                 variance: 0.0,
                 bound: 0.0,
@@ -157,7 +186,6 @@ mod tests {
     use super::*;
     use crate::config::{Parameters, Surface};
     use crate::sea::Wind;
-    use crate::statistics::characteristic::accelerations;
     use crate::surface::{Draws, InstanceRng};
     use std::f64::consts::TAU;
 

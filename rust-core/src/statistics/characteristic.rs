@@ -9,7 +9,6 @@
 //!
 //! Everything is even in both slopes (upwind and crosswind) and in the acceleration.
 
-use super::breaking::Acceleration;
 use crate::numeric::quadrature::{gauss_legendre, panels};
 use crate::sea::spectrum::spreading;
 use crate::surface::{Component as Wave, Waves};
@@ -40,18 +39,6 @@ pub(crate) struct Component {
 /// Variances of a drawn sea: slope upwind, crosswind, acceleration in m^2/s^4.
 pub(crate) fn variances(waves: &Waves) -> [f64; 3] {
     Component::new(waves).map_or([0.0; 3], |component| component.variances(waves.components as f64))
-}
-
-/// The acceleration of a sum of waves that are drawn already, over places and times.
-pub(crate) fn accelerations(waves: &[Wave]) -> Acceleration<impl Fn(&[f64]) -> Vec<f64>> {
-    let amplitudes: Vec<f64> = waves.iter().map(|c| c.amplitude * c.frequency * c.frequency).collect();
-    Acceleration {
-        variance: waves.iter().map(Wave::acceleration_variance).sum(),
-        bound: amplitudes.iter().sum(),
-        characteristic: move |frequencies: &[f64]| {
-            frequencies.iter().map(|r| amplitudes.iter().map(|a| bessel(a * r)).product()).collect()
-        },
-    }
 }
 
 /// No drawn sea is steeper.
@@ -122,19 +109,6 @@ impl Component {
     /// Bounds of a sum of `count`.
     pub fn bounds(&self, count: f64) -> [f64; 3] {
         self.bounds.map(|b| count * b)
-    }
-
-    /// The acceleration of a sum of `count`.
-    pub fn sum_of_accelerations(&self, count: f64) -> Acceleration<impl Fn(&[f64]) -> Vec<f64>> {
-        Acceleration {
-            variance: self.variances(count)[2],
-            bound: self.bounds(count)[2],
-            characteristic: move |frequencies: &[f64]| {
-                let mut values = self.acceleration(frequencies);
-                values.iter_mut().for_each(|c| *c = c.powi(count as i32));
-                values
-            },
-        }
     }
 
     /// Characteristic function of the slope at the products of these frequencies upwind and crosswind, row by row.
@@ -248,7 +222,7 @@ fn quintic(x: f64) -> [f64; 6] {
 }
 
 /// J0 of a number not below 0, to 1e-9: a table, beyond it the leading asymptotic terms.
-fn bessel(x: f64) -> f64 {
+pub(super) fn bessel(x: f64) -> f64 {
     static J0: LazyLock<Table> = LazyLock::new(|| Table::new(64.0, 0.0625, libm::j0));
     if x < 64.0 {
         return J0.at(x);

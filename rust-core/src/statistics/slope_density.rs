@@ -5,7 +5,7 @@
 //! the density times the probability of a whitecap (Eq. 53) at that slope. Slopes have a part upwind and one
 //! crosswind; everything is even in both.
 
-use super::breaking::{Resolution, weights};
+use super::breaking::{Resolution, sum_of_accelerations, weights};
 use super::characteristic::Component;
 use crate::brdf::shadowing::cos_lambda;
 use crate::config::Water;
@@ -281,7 +281,7 @@ fn fade(x: f64) -> f64 {
 fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64]) -> Option<Vec<f64>> {
     let onset = water.onset_on(Some(component))?;
     let count = f64::from(water.parameters.components);
-    let acceleration = component.sum_of_accelerations(count);
+    let acceleration = sum_of_accelerations(component, count);
     if onset.probability(-acceleration.bound) <= 0.0 {
         return None;
     }
