@@ -105,9 +105,13 @@ pub fn run(matches: &ArgMatches) -> Outcome {
         "sobol" => Draws::Sobol,
         _ => Draws::Random,
     };
-    let waves = if fade { water.fading_waves() } else { water.waves() };
+    let (waves, onset) = if fade {
+        (water.fading_waves(), water.fading_whitecap_onset(water.footprint))
+    } else {
+        (water.waves(), water.whitecap_onset())
+    };
     let sea = Sea {
-        all: Ensemble { waves, draws, ..Ensemble::new(&water)? },
+        all: Ensemble { waves, onset, draws, ..Ensemble::new(&water)? },
         instance: *matches.get_one("instance").expect("has a default"),
         fade,
     };
@@ -181,7 +185,7 @@ impl Sea {
             }
             let point = surface.point([x, y]);
             let ([slope_x, slope_y], [nx, ny, nz]) = (point.slope, point.normal());
-            let whitecap = self.all.water.whitecap_probability(point.acceleration);
+            let whitecap = self.all.onset.map_or(0.0, |onset| onset.probability(point.acceleration));
             let row_cells =
                 [time, x, y, point.height, slope_x, slope_y, nx, ny, nz, point.acceleration, whitecap];
             out.row(&row_cells.map(Cell::Number))?;

@@ -141,6 +141,7 @@ private:
                 j += 1u;
             },
             "waves of prob_water");
+        in.set(Input::Footprint, log2_footprint);
         in.set(Input::Sums, sums);
         auto found = replay.run(Kernel::Normal, 0, in);
         inputs.set(Input::Normal, Vector3f(found[0], found[1], found[2]));

@@ -171,6 +171,7 @@ impl Water {
         let places = Places {
             normal: drawn.is_some(),
             onset: drawn.and_then(|sea| sea.whitecap_onset()),
+            onsets: drawn.and_then(|sea| sea.whitecap_onsets()),
             whitecap: self.whitecap_texture || drawn.is_some(),
             footprint: self.facets.as_ref(),
         };

@@ -60,7 +60,9 @@ pub use empirical::{EmpiricalLobe, Estimate, FineGrid, Gridded, Table, planes, t
 pub use error::{Error, Warning};
 pub use numeric::{Real, Scalar, real};
 pub use readings::Readings;
-pub use render::{EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, ensemble_lobe, grid, mesh};
+pub use render::{
+    EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, OnsetTable, ensemble_lobe, grid, mesh,
+};
 pub use sea::{Salinity, SpectrumModel, Wind, WindProfile, spectrum, whitecap, wind};
 pub use statistics::{Aim, Engagement, Ensemble, Exact, Proposal, Statistics, WhitecapMode, ensemble};
 pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

@@ -22,7 +22,7 @@ Case = dict[str, Any]
 
 #: The base scenario of section 8; `incidence` is geometry, the others are the command's parameters.
 BASE: Case = {"friction_velocity": 8.0, "wind_direction": 0.0, "footprint": 0.15, "incidence": 30.0,
-              "components": 5, "readings": "corrected", "seed": 0}
+              "components": 5, "readings": "corrected", "whitecap_onset": "ramp", "seed": 0}
 BASE_TEXT = ("Base scenario: w* = 8 cm/s, wind along x, D = 0.15 m, θi = 30°, M = 5, n = 1.33. Bands are standard "
              "errors.")
 #: The report's N.

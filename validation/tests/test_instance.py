@@ -16,7 +16,7 @@ SEAS = [
     {"friction_velocity": 24.0, "components": 20, "wind_direction": 30.0, "seed": 4, "time": 3.5},
     {"friction_velocity": 56.0, "slope_measure": "slope", "fresnel": "exact", "footprint": 0.3},
     # Waves too gentle for whitecaps, whatever Eq. 51 says of this wind.
-    {"wind_speed": 25.0, "footprint": "inf"},
+    {"wind_speed": 25.0, "footprint": "inf", "whitecap_onset": "ramp"},
 ]
 
 

@@ -2,6 +2,7 @@
 
 use crate::{refuse, succeed};
 use exr::prelude::*;
+use prob_water::whitecap::WhitecapOnset;
 use prob_water::{
     Average, FootprintMeasure, Fresnel, Hiding, OffPlaneModel, Parameters, Readings, Salinity, SlopeBudget,
     SlopeMeasure, SlopeStatistics, SpectrumModel, Surface, Wind,
@@ -73,6 +74,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         slope_measure: SlopeMeasure::Slope,
         readings: Readings::AS_PRINTED,
         whitecaps: false,
+        whitecap_onset: WhitecapOnset::Step,
         shadowing: false,
         hiding: Hiding::Once,
         gram_charlier: false,

@@ -78,7 +78,7 @@ fn whitecaps_may_be_left_out() {
     let whitecaps = |flags: &str| {
         floats(&succeed(&format!("surface --grid 40,1,3 --wind-speed 25 {flags}"), ""), "whitecap")
     };
-    let found = whitecaps("");
+    let found = whitecaps("--whitecap-onset ramp");
     // Eq. 53 of the acceleration beside it.
     let accelerations = floats(&succeed("surface --grid 40,1,3 --wind-speed 25", ""), "acceleration");
     let wind = prob_water::Wind::Speed { speed: 25.0, height: 10.0 }.profile().unwrap();
@@ -88,6 +88,10 @@ fn whitecaps_may_be_left_out() {
     }
     assert!(found.len() == 40 && found.iter().any(|p| *p > 0.0) && found.contains(&0.0));
     assert_eq!(whitecaps("--whitecaps false"), [0.0; 40]);
+    // By default with what is not drawn: more where the acceleration is lower.
+    let mut calibrated: Vec<_> = accelerations.into_iter().zip(whitecaps("")).collect();
+    calibrated.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(calibrated.is_sorted_by(|a, b| a.1 >= b.1) && calibrated[39].1 < calibrated[0].1);
 }
 
 #[test]

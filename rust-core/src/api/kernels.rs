@@ -5,7 +5,7 @@ use crate::empirical::FineGrid;
 use crate::numeric::Real;
 use crate::numeric::real::Extended;
 use crate::render::ensemble_lobe::MeanLobe;
-use crate::render::{FacetTable, WaveTerm};
+use crate::render::{FacetTable, OnsetTable, WaveTerm};
 use crate::sea::whitecap::Onset;
 use crate::simd::recorded::{Program, Recording, Traced};
 
@@ -80,7 +80,7 @@ pub mod inputs {
     pub const RANDOM: u32 = 6;
     /// The wave normal.
     pub const NORMAL: u32 = 9;
-    /// The footprint, m; of a wave its log2.
+    /// The footprint, m; of a wave and of what follows from all of them its log2.
     pub const FOOTPRINT: u32 = 12;
     /// The probability of a whitecap.
     pub const WHITECAP: u32 = 13;
@@ -103,6 +103,8 @@ pub struct Places<'a> {
     pub normal: bool,
     /// Whitecaps come with it.
     pub onset: Option<Onset<f64>>,
+    /// Their onset for a footprint.
+    pub onsets: Option<&'a OnsetTable<f64>>,
     /// The probability of a whitecap is an input.
     pub whitecap: bool,
     /// Facets for a footprint.
@@ -178,6 +180,7 @@ struct Sea {
     mean: TracedMean,
     normal: Option<[Traced; 3]>,
     onset: Option<Onset<Traced>>,
+    onsets: Option<OnsetTable<Traced>>,
     log2_footprint: Option<Traced>,
 }
 
@@ -212,6 +215,7 @@ impl Sea {
             mean,
             normal: places.normal.then(|| x.vector(inputs::NORMAL)),
             onset: places.onset.map(|onset| onset.cast()),
+            onsets: places.onsets.map(OnsetTable::cast),
             log2_footprint: places.footprint.map(|_| x.number(inputs::FOOTPRINT)),
         }
     }
@@ -246,7 +250,11 @@ impl Sea {
             Kernel::Normal => {
                 let [down_x, down_y, fall] = x.vector(inputs::SUMS);
                 let z = down_x.mul_add(down_x, down_y.mul_add(down_y, Traced::of(1.0))).rsqrt();
-                let whitecap = self.onset.map_or(Traced::of(0.0), |onset| onset.probability(-fall));
+                let onset = match (&self.onsets, self.log2_footprint) {
+                    (Some(onsets), Some(log2_footprint)) => Some(onsets.at(log2_footprint)),
+                    _ => self.onset,
+                };
+                let whitecap = onset.map_or(Traced::of(0.0), |onset| onset.probability(-fall));
                 vec![down_x * z, down_y * z, z, whitecap]
             }
         }

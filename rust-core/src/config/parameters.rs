@@ -4,7 +4,8 @@ use super::slope_split::{SlopeBudget, SlopeSplit};
 use crate::brdf::{Fresnel, Lobe, SlopeMeasure, SlopeStatistics, WindAxes};
 use crate::error::{Error, Warning};
 use crate::readings::Readings;
-use crate::sea::{Salinity, SpectrumModel, Wind, WindProfile, whitecap};
+use crate::sea::whitecap::WhitecapOnset;
+use crate::sea::{Salinity, SpectrumModel, Wind, WindProfile};
 use std::f64::consts::{LN_2, SQRT_2};
 
 /// Which surface the facets lie on.
@@ -160,6 +161,8 @@ pub struct Parameters {
     pub readings: Readings,
     /// Whitecaps blended in.
     pub whitecaps: bool,
+    /// Where on drawn waves they stand.
+    pub whitecap_onset: WhitecapOnset,
     /// Shadowing function applied.
     pub shadowing: bool,
     /// Whose slopes it has.
@@ -197,6 +200,7 @@ impl Default for Parameters {
             slope_measure: SlopeMeasure::Angle,
             readings: Readings::CORRECTED,
             whitecaps: true,
+            whitecap_onset: WhitecapOnset::Calibrated,
             shadowing: true,
             hiding: Hiding::Report,
             gram_charlier: true,
@@ -277,15 +281,6 @@ impl Water {
         .into_iter()
         .flatten()
         .collect()
-    }
-
-    /// Probability of a whitecap (Eqs. 53-54) where a drawn surface has a vertical acceleration in m/s^2; 0 where
-    /// whitecaps are switched off.
-    pub fn whitecap_probability(&self, acceleration: f64) -> f64 {
-        if !self.parameters.whitecaps {
-            return 0.0;
-        }
-        whitecap::probability(self.wind.friction_velocity, 100.0 * acceleration)
     }
 
     /// Smallest and largest wave number drawn (Eqs. 21-22, or by the slope budget), rad/cm; `None`: there are no waves.

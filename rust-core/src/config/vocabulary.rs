@@ -8,6 +8,7 @@ use super::slope_split::SlopeBudget;
 use crate::brdf::fresnel::WAVELENGTHS;
 use crate::brdf::{Fresnel, SlopeMeasure, SlopeStatistics};
 use crate::error::{Error, refuse};
+use crate::sea::whitecap::WhitecapOnset;
 use crate::sea::{Salinity, SpectrumModel, Wind, wind};
 
 /// A parameter: what documentation and help show of it, and how it is read and written.
@@ -117,7 +118,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 32] = [
+pub const ENTRIES: [Entry; 33] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -433,6 +434,18 @@ pub const ENTRIES: [Entry; 32] = [
         access: field!(flag, whitecaps),
     },
     Entry {
+        name: "whitecap_onset",
+        unit: "",
+        default: "calibrated",
+        allowed: "calibrated, ramp, step",
+        help: "where on drawn waves whitecaps stand: so that they cover the fraction of Eq. 51 (`calibrated`), or by Eqs. 53-54 of \
+               the drawn waves alone, below w* = 24.9 cm/s with a step at -0.39 g (`ramp`) or at -alpha g (`step`); a table of \
+               the empirical model keeps the one that it was made with, the built-in one `ramp`",
+        surfaces: &DRAWN,
+        kind: Kind::Word,
+        access: field!(word, whitecap_onset, WHITECAP_ONSETS),
+    },
+    Entry {
         name: "shadowing",
         unit: "",
         default: "true",
@@ -583,6 +596,8 @@ const SPECTRA: [(&str, SpectrumModel); 4] = [
 const BUDGETS: [(&str, SlopeBudget); 2] = [("report", SlopeBudget::Report), ("closed", SlopeBudget::Closed)];
 const STATISTICS: [(&str, SlopeStatistics); 2] =
     [("cox_munk", SlopeStatistics::CoxMunk), ("breon_henriot", SlopeStatistics::BreonHenriot)];
+const WHITECAP_ONSETS: [(&str, WhitecapOnset); 3] =
+    [("calibrated", WhitecapOnset::Calibrated), ("ramp", WhitecapOnset::Ramp), ("step", WhitecapOnset::Step)];
 
 fn word<C: PartialEq>(choice: &C, choices: &[(&str, C)]) -> Option<Value> {
     choices.iter().find(|(_, c)| c == choice).map(|(name, _)| Value::Text((*name).into()))
@@ -760,6 +775,7 @@ mod tests {
             ("slope_measure", Value::Text("slope".into())),
             ("readings", Value::Text("56, 71-73".into())),
             ("whitecaps", Value::Flag(false)),
+            ("whitecap_onset", Value::Text("step".into())),
             ("shadowing", Value::Flag(false)),
             ("hiding", Value::Text("once".into())),
             ("gram_charlier", Value::Flag(false)),
@@ -826,6 +842,7 @@ mod tests {
                 slope_measure: SlopeMeasure::Slope,
                 readings: Readings::EQ_66 | Readings::EQ_22,
                 whitecaps: false,
+                whitecap_onset: WhitecapOnset::Ramp,
                 shadowing: false,
                 hiding: Hiding::Once,
                 gram_charlier: false,

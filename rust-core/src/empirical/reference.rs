@@ -17,6 +17,7 @@ use super::planes::Planes;
 use crate::config::Water;
 use crate::error::Error;
 use crate::numeric::gaussian_fit::Gaussian;
+use crate::sea::whitecap::Onset;
 use crate::statistics::characteristic::variances;
 use crate::statistics::level_water::BaselineLobe;
 use crate::statistics::{Engagement, Exact};
@@ -96,6 +97,7 @@ pub struct ReferenceModel {
     /// Its parameters give the seed and the number of instances. Whitecaps reflect nothing: they are counted.
     water: Water,
     waves: Waves,
+    onset: Option<Onset<f64>>,
     exact: Exact,
     baseline: BaselineLobe,
 }
@@ -107,7 +109,8 @@ impl ReferenceModel {
         water.lobe.whitecap_brdf = 0.0;
         let mut exact = Exact::new(&water)?;
         exact.obscuration = false;
-        Ok(Self { water, waves: water.waves(), exact, baseline: BaselineLobe::new(&water) })
+        let onset = water.whitecap_onset();
+        Ok(Self { water, waves: water.waves(), onset, exact, baseline: BaselineLobe::new(&water) })
     }
 
     /// The same sea under a wind from another azimuth, in degrees, counted from the plane of incidence, away from the
@@ -115,7 +118,13 @@ impl ReferenceModel {
     pub fn turned(&self, degrees: f64) -> Self {
         let water = self.water.turned(degrees);
         let exact = self.exact.turned(degrees);
-        Self { water, waves: water.waves(), exact, baseline: self.baseline.turned(degrees) }
+        Self {
+            water,
+            waves: water.waves(),
+            onset: self.onset,
+            exact,
+            baseline: self.baseline.turned(degrees),
+        }
     }
 
     /// The numbers for an angle of incidence, looked at from angles theta_r; radians. The source stands towards -x,
@@ -275,7 +284,7 @@ impl ReferenceModel {
         let position = DVec3::new(0.0, 0.0, at.height);
         let mut ray = SurfaceRay::default();
         let lit = !ray.occludes(&surface, position, DVec3::from(source) * LASER);
-        let whitecap = self.water.whitecap_probability(at.acceleration);
+        let whitecap = self.onset.map_or(0.0, |onset| onset.probability(at.acceleration));
         let point = SeaPoint { position, normal: at.normal(), area, lit, whitecap };
         look(&point, &surface, &mut ray);
     }

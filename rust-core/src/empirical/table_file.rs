@@ -161,7 +161,10 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {
-        Some(match parameters.get(name)? {
+        // Files that do not tell are of Eqs. 53-54 alone.
+        let ramp = || (name == "whitecap_onset").then(|| Value::Text("ramp".into()));
+        let Some(told) = parameters.get(name) else { return ramp() };
+        Some(match told {
             serde_json::Value::Bool(x) => Value::Flag(*x),
             serde_json::Value::Number(x) => Value::Number(x.as_f64()?),
             serde_json::Value::String(x) => Value::Text(x.clone()),
@@ -233,6 +236,7 @@ mod tests {
     use super::*;
     use crate::config::Surface;
     use crate::empirical::table::Plan;
+    use crate::sea::whitecap::WhitecapOnset;
 
     fn small() -> Table {
         let sea = Parameters {
@@ -313,7 +317,11 @@ mod tests {
     fn the_standard_table_is_what_its_documentation_says() {
         let table = Table::standard();
         assert_eq!(table.grid, Grid::default());
-        let made_with = Parameters { instances: crate::empirical::table::INSTANCES, ..Parameters::default() };
+        let made_with = Parameters {
+            instances: crate::empirical::table::INSTANCES,
+            whitecap_onset: WhitecapOnset::Ramp,
+            ..Parameters::default()
+        };
         let made_with = Plan::new(&made_with, &Grid::default()).unwrap();
         assert!(table.to_bytes() == STANDARD, "written anew the file is another");
         // Of all its rows one that takes little, and one where drawn surfaces matter.

@@ -96,8 +96,8 @@ impl EnsembleLobe {
         let waves = water.waves();
         let wind = WindFrame::new(waves.wind_azimuth);
         let slopes = Component::new(&waves).map(|component| Slopes::new(&component, water)).transpose()?;
-        let mut sampler = water.lobe;
-        sampler = sampler.with_whitecaps(water.whitecap_probability(0.0));
+        let level = water.whitecap_onset().map_or(0.0, |onset| onset.probability(0.0));
+        let mut sampler = water.lobe.with_whitecaps(level);
         if let Some(slopes) = &slopes {
             let f = &mut sampler.facets;
             f.proposal = [f.proposal[0].hypot(slopes.sigma.x), f.proposal[1].hypot(slopes.sigma.y)];

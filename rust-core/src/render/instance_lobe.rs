@@ -1,5 +1,6 @@
 //! The BRDF of a level surface that reflects, place by place, as one drawn sea does: `surface = "instance"`.
 
+use super::OnsetTable;
 use crate::brdf::lobe::{cosine, up};
 use crate::brdf::{Lobe, Parts};
 use crate::config::Water;
@@ -17,6 +18,8 @@ pub struct InstanceLobe {
     water: Water,
     components: Vec<Component>,
     surface: Surface,
+    onset: Option<Onset<f64>>,
+    onsets: Option<OnsetTable<f64>>,
 }
 
 /// The sea at a place.
@@ -34,7 +37,7 @@ impl InstanceLobe {
     /// # Errors
     /// [`Error::Surface`] where the surface is not [`crate::Surface::Instance`].
     pub fn new(water: &Water) -> Result<Self, Error> {
-        Self::of(water, water.waves())
+        Self::of(water, water.waves(), water.whitecap_onset(), None)
     }
 
     /// The same for footprints that change from place to place, from the parameters' one upwards: with the waves that
@@ -43,15 +46,24 @@ impl InstanceLobe {
     /// # Errors
     /// As [`InstanceLobe::new`].
     pub fn fading(water: &Water) -> Result<Self, Error> {
-        Self::of(water, water.fading_waves())
+        let onset = water.fading_whitecap_onset(water.footprint);
+        Self::of(water, water.fading_waves(), onset, OnsetTable::new(water))
     }
 
-    fn of(water: &Water, waves: Waves) -> Result<Self, Error> {
+    fn of(
+        water: &Water,
+        waves: Waves,
+        onset: Option<Onset<f64>>,
+        onsets: Option<OnsetTable<f64>>,
+    ) -> Result<Self, Error> {
         let water = water.on(&[crate::config::Surface::Instance])?;
-        let sea = Ensemble { waves, ..Ensemble::new(&water)? };
+        let sea = Ensemble { waves, onset, ..Ensemble::new(&water)? };
         let components: Vec<_> = sea.components(0).1.collect();
         let surface = Surface::new(components.iter().copied(), water.parameters.time);
-        Ok(Self { water, components, surface })
+        // None can stand where all crests together are not steep enough.
+        let steepest: f64 = components.iter().map(|c| c.amplitude * c.frequency * c.frequency).sum();
+        let onset = onset.filter(|onset| onset.probability(-steepest) > 0.0);
+        Ok(Self { water, components, surface, onset, onsets })
     }
 
     /// The waves that make the sea.
@@ -65,9 +77,14 @@ impl InstanceLobe {
         self.components.iter().map(move |c| WaveTerm::new(c, time))
     }
 
-    /// Where whitecaps can stand, their onset.
+    /// The onset of whitecaps; `None` where none can stand anywhere.
     pub fn whitecap_onset(&self) -> Option<Onset<f64>> {
-        self.has_whitecaps().then(|| Onset::new(self.water.wind.friction_velocity))
+        self.onset
+    }
+
+    /// The onset for footprints that change from place to place, where it follows them.
+    pub fn whitecap_onsets(&self) -> Option<&OnsetTable<f64>> {
+        self.onsets.as_ref()
     }
 
     /// The sea at a place in m. With a footprint in m the waves too short for it are left to the facets.
@@ -76,13 +93,12 @@ impl InstanceLobe {
             None => self.surface.point(place),
             Some(footprint) => self.surface.point_within(place, footprint),
         };
-        LocalSea { normal: point.normal(), whitecap: self.water.whitecap_probability(point.acceleration) }
-    }
-
-    /// Whether a whitecap can stand anywhere: none can where all crests together are not steep enough.
-    pub fn has_whitecaps(&self) -> bool {
-        let steepest: f64 = self.components.iter().map(|c| c.amplitude * c.frequency * c.frequency).sum();
-        self.water.whitecap_probability(-steepest) > 0.0
+        let onset = match (&self.onsets, footprint) {
+            (Some(onsets), Some(footprint)) => Some(onsets.at(footprint.log2())),
+            _ => self.onset,
+        };
+        let whitecap = onset.map_or(0.0, |onset| onset.probability(point.acceleration));
+        LocalSea { normal: point.normal(), whitecap }
     }
 
     /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon,

@@ -1,14 +1,14 @@
 //! One realised sea as a triangle mesh whose level of detail changes with the distance: at every vertex the waves longer
-//! than two footprints are geometry ([`share`](crate::surface::share)), the shorter ones facets, and where crests break
-//! is what the drawn waves say of Eqs. 53-54.
+//! than two footprints are geometry ([`share`](crate::surface::share)), the shorter ones facets, and crests break by Eqs.
+//! 53-54 so that Eq. 51's fraction of every ring of vertices is covered.
 
 use super::grid::{CELLS, Grid, Layout, Ring, needed, split};
 use crate::config::{Surface, Water};
 use crate::error::Error;
 use crate::numeric::root::bisect;
-use crate::sea::whitecap;
+use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
-use crate::statistics::characteristic::variances;
+use crate::statistics::breaking::accelerations;
 use crate::surface::{Component, Draws, Point, Surface as RealisedSurface, WaveSums};
 use rayon::prelude::*;
 use std::fmt;
@@ -34,23 +34,9 @@ pub struct Mesh {
     pub grid: Grid,
     /// In order of rising wave numbers.
     pub components: Vec<Component>,
-    foam: Option<Foam>,
+    /// Of whitecaps, on every ring; empty where there are none.
+    onsets: Vec<Onset<f64>>,
 }
-
-/// Whitecaps by the waves' vertical acceleration.
-#[derive(Debug, Clone, Copy)]
-struct Foam {
-    /// Standard deviation of the acceleration that gives Eq. 51's fraction, m/s^2; `None`: they are everywhere.
-    deviation: Option<f64>,
-    /// What a drawn wave's acceleration counts.
-    gain: f64,
-    /// So many of the components, the longest, have no more.
-    waves: usize,
-}
-
-/// Where the waves longer than two such footprints have too little acceleration for Eq. 51's fraction, theirs counts more:
-/// at this D, m, Eqs. 53-54 and Eq. 51 agree.
-const BREAKING: f64 = 0.1;
 
 /// What does not change with time.
 #[derive(Debug, Clone)]
@@ -74,23 +60,6 @@ pub struct Vertices {
     pub whitecaps: Vec<f32>,
 }
 
-impl Foam {
-    fn new(water: &Water, fraction: f64, components: &[Component]) -> Self {
-        let deviation = whitecap::deviation(water.wind.friction_velocity, fraction).map(|s| 0.01 * s);
-        let wanted = deviation.unwrap_or_default().powi(2);
-        let breaking = Water { footprint: BREAKING, ..*water };
-        let [_, _, theirs] = variances(&breaking.waves());
-        let gain = if theirs > 0.0 { (wanted / theirs).sqrt().max(1.0) } else { 1.0 };
-        let mut sum = 0.0;
-        let fits = |c: &&Component| {
-            sum += gain * gain * c.acceleration_variance();
-            sum <= wanted
-        };
-        let waves = components.iter().take_while(fits).count();
-        Self { deviation, gain, waves }
-    }
-}
-
 impl Mesh {
     /// A sea within the layout's budgets: one instance, its draws stratified.
     ///
@@ -101,9 +70,10 @@ impl Mesh {
         let grid = Grid::new(layout, water.footprint)?;
         let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(water)? };
         let components: Vec<_> = sea.components(0).1.collect();
-        let fraction = if water.parameters.whitecaps { water.whitecap_fraction } else { 0.0 };
-        let foam = (fraction > 0.0).then(|| Foam::new(water, fraction, &components));
-        Ok(Self { water: *water, grid, components, foam })
+        let mut mesh = Self { water: *water, grid, components, onsets: vec![] };
+        let onset = |ring: &Ring| water.onset_of(&accelerations(&mesh.seen(ring)));
+        mesh.onsets = mesh.grid.rings.par_iter().filter_map(onset).collect();
+        Ok(mesh)
     }
 
     /// What does not change with time.
@@ -149,67 +119,52 @@ impl Mesh {
         let mut all = Vertices {
             positions: zeros(3),
             normals: zeros(3),
-            whitecaps: zeros(usize::from(self.foam.is_some())),
+            whitecaps: zeros(usize::from(!self.onsets.is_empty())),
         };
         let pieces =
             |array, width| split(array, self.grid.rings.iter().map(move |r| width * self.grid.on(r)));
         let positions = pieces(&mut all.positions, 3);
         let normals = pieces(&mut all.normals, 3);
-        let whitecaps = pieces(&mut all.whitecaps, usize::from(self.foam.is_some()));
+        let whitecaps = pieces(&mut all.whitecaps, usize::from(!self.onsets.is_empty()));
         let rings = self.grid.rings.par_iter().zip(positions).zip(normals).zip(whitecaps);
-        rings.for_each(|(((ring, positions), normals), whitecaps)| {
-            self.ring(ring, time, positions, normals, whitecaps);
+        rings.enumerate().for_each(|(n, (((ring, positions), normals), whitecaps))| {
+            self.ring(ring, self.onsets.get(n), time, positions, normals, whitecaps);
         });
         all
+    }
+
+    /// The waves that are geometry on a ring.
+    fn seen(&self, ring: &Ring) -> Vec<Component> {
+        let mut waves: Vec<_> = self.components.iter().map(|c| c.seen_at(ring.footprint)).collect();
+        waves.retain(|c| c.amplitude > 0.0);
+        waves
     }
 
     fn ring(
         &self,
         ring: &Ring,
+        onset: Option<&Onset<f64>>,
         time: f64,
         positions: &mut [f32],
         normals: &mut [f32],
         whitecaps: &mut [f32],
     ) {
-        let seen = |waves: &[Component]| {
-            let mut waves: Vec<_> = waves.iter().map(|c| c.seen_at(ring.footprint)).collect();
-            waves.retain(|c| c.amplitude > 0.0);
-            waves
-        };
-        let (breaking, rest) = self.components.split_at(self.foam.map_or(0, |foam| foam.waves));
-        let (breaking, rest) = (seen(breaking), seen(rest));
-        let resolved: f64 = breaking.iter().map(Component::acceleration_variance).sum();
         let places: Vec<_> = self.grid.places(ring).collect();
         let precise: Vec<_> = places.iter().map(|place| place.map(f64::from)).collect();
-        let points = |waves: Vec<Component>| {
-            let mut points = vec![Point::default(); places.len()];
-            let surface = RealisedSurface::new(waves.into_iter(), time);
-            WaveSums::new(&surface).points(&precise, &mut points);
-            points
-        };
-        let sums = points(breaking).into_iter().zip(points(rest));
+        let mut points = vec![Point::default(); places.len()];
+        let surface = RealisedSurface::new(self.seen(ring).into_iter(), time);
+        WaveSums::new(&surface).points(&precise, &mut points);
 
         let corners = positions.chunks_exact_mut(3).zip(normals.chunks_exact_mut(3));
-        for (i, (([x, y], (mut point, other)), (position, normal))) in
-            places.into_iter().zip(sums).zip(corners).enumerate()
-        {
-            point.height += other.height;
-            point.slope = std::array::from_fn(|axis| point.slope[axis] + other.slope[axis]);
+        for (([x, y], point), (position, normal)) in places.into_iter().zip(&points).zip(corners) {
             position.copy_from_slice(&[x, y, point.height as f32]);
             normal.copy_from_slice(&point.normal().map(|x| x as f32));
-            if let Some(foam) = self.foam {
-                whitecaps[i] = self.whitecap(foam, point.acceleration, resolved) as f32;
+        }
+        if let Some(onset) = onset {
+            for (whitecap, point) in whitecaps.iter_mut().zip(&points) {
+                *whitecap = onset.probability(point.acceleration) as f32;
             }
         }
-    }
-
-    /// Probability of a whitecap where the resolved waves have an acceleration in m/s^2 and all over the sea its variance.
-    fn whitecap(&self, foam: Foam, acceleration: f64, resolved: f64) -> f64 {
-        let Foam { deviation, gain, .. } = foam;
-        let Some(all) = deviation else { return self.water.whitecap_fraction };
-        let rest = (all * all - gain * gain * resolved).max(0.0).sqrt();
-        let w = self.water.wind.friction_velocity;
-        whitecap::mean_probability(w, 100.0 * gain * acceleration, 100.0 * rest)
     }
 }
 

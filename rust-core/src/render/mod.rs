@@ -5,9 +5,11 @@ mod facet_table;
 pub mod grid;
 mod instance_lobe;
 pub mod mesh;
+mod onset_table;
 
 pub use ensemble_lobe::EnsembleLobe;
 pub use facet_table::FacetTable;
 pub use grid::{Grid, Layout};
 pub use instance_lobe::{InstanceLobe, LocalSea, WaveTerm};
 pub use mesh::Mesh;
+pub use onset_table::OnsetTable;

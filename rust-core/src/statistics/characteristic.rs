@@ -10,7 +10,7 @@
 //! Everything is even in both slopes (upwind and crosswind) and in the acceleration.
 
 use crate::numeric::quadrature::{gauss_legendre, panels};
-use crate::surface::Waves;
+use crate::surface::{Component as Wave, Waves};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
@@ -18,6 +18,9 @@ use std::sync::LazyLock;
 /// Nodes in ln k for every piece of the spectrum, and azimuths of a half turn.
 const WAVE_NUMBERS: usize = 16;
 const AZIMUTHS: usize = 32;
+
+/// Rare whitecaps need digits of the acceleration alone: its table has steps shorter by this.
+const FINER: f64 = 0.4;
 
 /// Draws of one component.
 #[derive(Debug, Clone)]
@@ -51,15 +54,29 @@ pub(crate) fn steepest(waves: &Waves) -> f64 {
 impl Component {
     /// `None` where there are no waves.
     pub fn new(waves: &Waves) -> Option<Self> {
+        Self::seen(waves, &[], |wave| wave)
+    }
+
+    /// Of waves that fade, where the footprint in m is this one.
+    pub fn fading(waves: &Waves, footprint: f64) -> Option<Self> {
+        let starts = [-0.5f64, 0.5].map(|octave| 0.01 * PI / footprint * octave.exp2());
+        Self::seen(waves, &starts, |wave| wave.seen_at(footprint))
+    }
+
+    /// With amplitudes that change, smoothly but for some wave numbers in rad/cm.
+    fn seen(waves: &Waves, kinks: &[f64], seen: impl Fn(Wave) -> Wave) -> Option<Self> {
         let [low, high] = waves.log_range?;
         let rule = gauss_legendre(WAVE_NUMBERS);
         let spectrum = &waves.spectrum;
         let (mut wave_numbers, mut nodes) = (vec![], vec![]);
-        for piece in waves.spectrum.pieces(low.exp(), high.exp()).windows(2) {
+        let mut pieces = spectrum.pieces(low.exp(), high.exp());
+        pieces.extend(kinks.iter().filter(|k| (low.exp()..high.exp()).contains(*k)));
+        pieces.sort_unstable_by(f64::total_cmp);
+        for piece in pieces.windows(2) {
             let (start, end) = (piece[0].ln(), piece[1].ln());
             wave_numbers.extend(panels(&rule, start, end, end - start).into_iter().map(|(log_k, width)| {
                 nodes.push(log_k.exp());
-                let component = waves.component(log_k.exp(), 0.0, waves.wind_azimuth);
+                let component = seen(waves.component(log_k.exp(), 0.0, waves.wind_azimuth));
                 let amplitude = component.amplitude / spectrum.spreading(log_k.exp(), 0.0).sqrt();
                 let acceleration = amplitude * component.frequency.powi(2);
                 [width / (high - low), amplitude * component.wave_number, acceleration]
@@ -142,8 +159,9 @@ impl Component {
     pub fn acceleration(&self, frequencies: &[f64]) -> Vec<f64> {
         let widest = self.azimuths.iter().map(|a| a[2]).fold(0.0, f64::max);
         let end = widest * frequencies.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let tables =
-            self.tables(|row| Table::new(end, self.finest(row, 2), |y| self.mean(row, |n| bessel(n[2] * y))));
+        let tables = self.tables(|row| {
+            Table::new(end, FINER * self.finest(row, 2), |y| self.mean(row, |n| bessel(n[2] * y)))
+        });
         let of = |r: &f64| {
             let of = |(i, a): (usize, &[f64; 3])| tables[self.row(i)].at(a[2] * r);
             self.azimuths.iter().enumerate().map(of).sum::<f64>() / AZIMUTHS as f64
@@ -250,7 +268,7 @@ fn quintic(x: f64) -> [f64; 6] {
 }
 
 /// J0 of a number not below 0, to 1e-7: a table, beyond it the leading asymptotic terms.
-fn bessel(x: f64) -> f64 {
+pub(super) fn bessel(x: f64) -> f64 {
     static J0: LazyLock<Table> = LazyLock::new(|| Table::new(64.0, 0.125, libm::j0));
     if x < 64.0 {
         return J0.at(x);

@@ -37,6 +37,7 @@ use super::engagement::Engagement;
 use crate::config::Water;
 use crate::config::parameters::DRAWN;
 use crate::error::Error;
+use crate::sea::whitecap::Onset;
 use crate::surface::{Component, Draws, InstanceRng, Point, Surface, SurfaceRay, Waves};
 use glam::DVec3;
 
@@ -69,6 +70,8 @@ pub struct Ensemble {
     pub water: Water,
     /// What its waves are drawn from.
     pub waves: Waves,
+    /// Where whitecaps stand on them; `None`: nowhere.
+    pub onset: Option<Onset<f64>>,
     /// How their random numbers are spread.
     pub draws: Draws,
     /// How whitecaps take part.
@@ -112,6 +115,7 @@ impl Ensemble {
         Ok(Self {
             water,
             waves: water.waves(),
+            onset: water.whitecap_onset(),
             draws: Draws::Random,
             presence: WhitecapMode::Drawn,
             proposal: Proposal::Plain,
@@ -143,7 +147,7 @@ impl Ensemble {
 
     /// The hit at a place whose surface is known.
     pub(crate) fn hit_of(&self, point: &Point, place: [f64; 2], chance: f64) -> Hit {
-        let probability = self.water.whitecap_probability(point.acceleration);
+        let probability = self.onset.map_or(0.0, |onset| onset.probability(point.acceleration));
         Hit {
             position: [place[0], place[1], point.height],
             normal: point.normal(),

@@ -1,5 +1,6 @@
 //! The probabilistic BRDF: what observers of a laser's reflection may see, by draws and without (section 7).
 
+pub(crate) mod breaking;
 pub(crate) mod characteristic;
 mod engagement;
 pub mod ensemble;

@@ -5,12 +5,12 @@
 //! the density times the probability of a whitecap (Eq. 53) at that slope. Slopes have a part upwind and one
 //! crosswind; everything is even in both.
 
+use super::breaking::{Resolution, sum_of_accelerations, weights};
 use super::characteristic::Component;
 use crate::brdf::shadowing::cos_lambda;
 use crate::config::Water;
 use crate::error::{Error, refuse};
 use crate::readings::Readings;
-use crate::sea::whitecap;
 use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -30,6 +30,8 @@ const FAINT: f64 = 3e-4;
 const RARE: f64 = 1e-5;
 /// A standard deviation of the acceleration, m/s^2, so small that there is none.
 const STILL: f64 = 1e-6;
+/// Accelerations for a table.
+const TABULATED: Resolution = Resolution { end: 7.0, highest: 10.0, negligible: NEGLIGIBLE };
 /// Most frequencies and most slopes on an axis: up to there tables take a second.
 const MOST: [usize; 2] = [800, 2400];
 /// Integrals reach to so many standard deviations of the facets' lobe, and of its product with the drawn slopes', in
@@ -282,61 +284,26 @@ fn fade(x: f64) -> f64 {
 
 /// The transform of W over the slope's frequencies; `None` where whitecaps are off or too rare to matter.
 fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64]) -> Option<Vec<f64>> {
-    if !water.parameters.whitecaps {
-        return None;
-    }
+    let onset = water.onset_on(Some(component))?;
     let count = f64::from(water.parameters.components);
-    let (sigma, bound) = (component.variances(count)[2].sqrt(), component.bounds(count)[2]);
-    let ends = whitecap::onset(water.wind.friction_velocity).map(|a| 0.01 * a);
-    if ends[1] <= -bound {
+    let acceleration = sum_of_accelerations(component, count);
+    if onset.probability(-acceleration.bound) <= 0.0 {
         return None;
     }
-    if sigma < STILL {
-        let probability = water.whitecap_probability(0.0);
+    if acceleration.variance.sqrt() < STILL {
+        let probability = onset.probability(0.0);
         let power = |c: f64| probability * c.powi(count as i32);
         return (probability > RARE)
             .then(|| component.slope(upwind, crosswind).into_iter().map(power).collect());
     }
-    let apart = PI / (1.05 * bound.min(7.0 * sigma));
-    let mut frequencies: Vec<f64> =
-        (0..).map(|n| f64::from(n) * apart).take_while(|r| *r < 10.0 / sigma).collect();
-    let mut level = component.acceleration(&frequencies);
-    let used = level.iter().rposition(|c| c.abs().powf(count) > NEGLIGIBLE).unwrap_or(0) + 2;
-    frequencies.truncate(used);
-    level.truncate(used);
-    let weights = falling(ends, &frequencies);
-    let sum = |row: &[f64]| row.iter().zip(&weights).map(|(c, w)| w * c.powi(count as i32)).sum::<f64>();
-    if sum(&level) < RARE {
+    let (frequencies, level) = acceleration.spectrum(onset.residual(), &TABULATED);
+    let weights = weights(&onset, &frequencies);
+    if level.iter().zip(&weights).map(|(c, w)| w * c).sum::<f64>() < RARE {
         return None;
     }
+    let sum = |row: &[f64]| row.iter().zip(&weights).map(|(c, w)| w * c.powi(count as i32)).sum::<f64>();
     let joint = component.slope_and_acceleration(upwind, crosswind, &frequencies);
     Some(joint.chunks(frequencies.len()).map(sum).collect())
-}
-
-/// Weights of the cosines, at these equally spaced frequencies from 0, of the even part of a function that falls
-/// linearly from 1 at `ends[0]` to 0 at `ends[1]`, over one period of the first frequency after 0.
-fn falling(ends: [f64; 2], frequencies: &[f64]) -> Vec<f64> {
-    // A mean over steps from 1 to 0, at places evenly spread between the ends; one beyond the period is 1 or 0 all over.
-    let half_period = PI / frequencies[1];
-    let [a, b] = ends.map(|x| x.clamp(-half_period, half_period));
-    let middle = 0.5 * (a + b);
-    let width = ends[1] - ends[0];
-    let inside = if width > 0.0 { (b - a) / width } else { f64::from(a.abs() < half_period) };
-    let beyond = if width > 0.0 {
-        (ends[1] - ends[0].max(half_period)).max(0.0) / width
-    } else {
-        f64::from(a >= half_period)
-    };
-    let weight = |r: &f64| {
-        if *r == 0.0 {
-            return beyond + inside * 0.5 * (1.0 + middle / half_period);
-        }
-        // The mean of sin(r x) over [a, b].
-        let spread = 0.5 * r * (b - a);
-        let narrow = if spread.abs() < 1e-6 { 1.0 } else { spread.sin() / spread };
-        inside * narrow * (r * middle).sin() / (r * half_period)
-    };
-    frequencies.iter().map(weight).collect()
 }
 
 /// What is less than this beside the largest value is taken for a ripple of the transform, and for 0. Larger ripples,
@@ -419,27 +386,6 @@ pub(crate) fn cubic(x: f64) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn falling_is_its_cosine_series() {
-        let frequencies: Vec<f64> = (0..4000).map(|i| f64::from(i) * 0.5).collect();
-        for ends in [[-3.0, -1.5], [-3.0, -3.0], [-2.0, 1.0], [-9.0, 3.0], [-20.0, -5.0], [-8.0, 11.0]] {
-            let weights = falling(ends, &frequencies);
-            for x in [-5.0, -2.5, -1.7, 0.3, 0.9, 2.2, 5.5] {
-                let at = |x: f64| {
-                    if x <= ends[0] {
-                        1.0
-                    } else if x >= ends[1] {
-                        0.0
-                    } else {
-                        (ends[1] - x) / (ends[1] - ends[0])
-                    }
-                };
-                let series: f64 = frequencies.iter().zip(&weights).map(|(r, w)| w * (r * x).cos()).sum();
-                assert!((series - 0.5 * (at(x) + at(-x))).abs() < 1e-3, "{ends:?} {x}: {series}");
-            }
-        }
-    }
 
     #[test]
     fn a_gaussian_transforms_into_one() {

@@ -4,6 +4,7 @@ use crate::common::worse;
 use prob_water::empirical::{Moments, ReferenceModel};
 use prob_water::planes::Planes;
 use prob_water::table::{Grid, Plan};
+use prob_water::whitecap::WhitecapOnset;
 use prob_water::{
     EmpiricalLobe, Engagement, Ensemble, OffPlaneModel, Parameters, Surface, Table, Water, WhitecapMode, Wind,
 };
@@ -19,6 +20,8 @@ fn sea(w: f64, wind_direction: f64, instances: u64) -> Water {
         footprint: Some(0.15),
         instances,
         ior: Some(1.33),
+        // As the built-in table.
+        whitecap_onset: WhitecapOnset::Ramp,
         ..Parameters::default()
     };
     parameters.configure().unwrap()

@@ -2,6 +2,7 @@
 
 use crate::common::{direction, rows, water};
 use prob_water::statistics::Sighting;
+use prob_water::whitecap::WhitecapOnset;
 use prob_water::{Engagement, Ensemble, Statistics, Surface, Water, WhitecapMode};
 
 /// The base scenario of the report's section 8, with a number of instances.
@@ -11,6 +12,7 @@ fn base(friction_velocity: f64, instances: u64) -> Water {
         p.footprint = Some(0.15);
         p.instances = instances;
         p.whitecaps = true;
+        p.whitecap_onset = WhitecapOnset::Ramp;
         p.wavelength = 1.0;
     })
 }

@@ -2,9 +2,8 @@
 
 use crate::common::{direction, dot, water};
 use prob_water::surface::{Draws, InstanceRng};
-use prob_water::{
-    Engagement, Ensemble, Exact, Parameters, SlopeBudget, SpectrumModel, Surface, Water, whitecap,
-};
+use prob_water::whitecap::WhitecapOnset;
+use prob_water::{Engagement, Ensemble, Exact, Parameters, SlopeBudget, SpectrumModel, Surface, Water};
 use rayon::prelude::*;
 
 fn sea(friction_velocity: f64, footprint: f64, components: u32) -> Water {
@@ -46,7 +45,7 @@ const BATCH: u64 = 2000;
 /// Weighted mean and its standard error, of f, f^2 and f cos, for every view.
 fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec<[(f64, f64); 3]> {
     let waves = water.waves();
-    let w = water.wind.friction_velocity;
+    let onset = water.whitecap_onset();
     let zero = || Sums {
         values: vec![[0.0; 3]; views.len()],
         squares: vec![[0.0; 3]; views.len()],
@@ -61,7 +60,7 @@ fn drawn(water: &Water, source: [f64; 3], views: &[[f64; 3]], draws: u64) -> Vec
             let point = waves.surface(numbers, 0.0).point([0.0; 2]);
             let n = point.normal();
             let area = (dot(n, source) / n[2]).max(0.0);
-            let foam = chance < whitecap::probability(w, 100.0 * point.acceleration);
+            let foam = onset.is_some_and(|onset| chance < onset.probability(point.acceleration));
             sums.area += area;
             sums.area2 += area * area;
             if area <= 0.0 {
@@ -306,7 +305,14 @@ fn distributions() {
         ("fetch 5000, shallow", 40.0, sea(24.0, &|p| (p.fetch, p.depth) = (5e3, 0.5))),
         ("hurricane", 20.0, sea(238.0, &|p| p.footprint = Some(f64::INFINITY))),
         ("hurricane, shallow", 20.0, sea(200.0, &|p| (p.footprint, p.depth) = (Some(5.0), 0.2))),
-        ("hurricane, no depth", 20.0, sea(238.0, &|p| (p.footprint, p.depth) = (Some(5.0), 1e-200))),
+        // Without Eq. 51's fraction, which is 1: there would be nothing but whitecaps.
+        (
+            "hurricane, no depth",
+            20.0,
+            sea(238.0, &|p| {
+                (p.footprint, p.depth, p.whitecap_onset) = (Some(5.0), 1e-200, WhitecapOnset::Ramp);
+            }),
+        ),
         ("slopes", 10.0, sea(40.0, &|p| p.slope_measure = prob_water::SlopeMeasure::Slope)),
         ("as printed", 30.0, sea(16.0, &|p| p.readings = prob_water::Readings::AS_PRINTED)),
         ("calm", 30.0, sea(0.0, &|_| ())),

@@ -81,6 +81,7 @@ fn empirical(lines: &mut Lines) {
     for _ in 0..seas {
         let parameters = Parameters {
             whitecaps: true,
+            whitecap_onset: Table::standard().parameters.whitecap_onset,
             wind_direction: lines.uniform(0.0, 360.0),
             ..sea(Surface::Empirical, lines.decades(2.0, 24.0), lines.decades(0.05, 0.5))
         };
