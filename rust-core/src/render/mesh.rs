@@ -71,8 +71,12 @@ impl Mesh {
         let sea = Ensemble { draws: Draws::Stratified, waves: water.fading_waves(), ..Ensemble::new(water)? };
         let components: Vec<_> = sea.components(0).1.collect();
         let mut mesh = Self { water: *water, grid, components, onsets: vec![] };
-        let onset = |ring: &Ring| water.onset_of(&accelerations(&mesh.seen(ring)));
-        mesh.onsets = mesh.grid.rings.par_iter().filter_map(onset).collect();
+        // Rings of one footprint have the same waves.
+        let alike: Vec<&[Ring]> = mesh.grid.rings.chunk_by(|a, b| a.footprint == b.footprint).collect();
+        let onsets = |rings: &&[Ring]| {
+            water.onset_of(&accelerations(&mesh.seen(&rings[0]))).map(|onset| vec![onset; rings.len()])
+        };
+        mesh.onsets = alike.par_iter().filter_map(onsets).flatten_iter().collect();
         Ok(mesh)
     }
 
