@@ -132,7 +132,7 @@ fn whitecaps_of_fading_waves_cover_the_fraction() {
         let instance = InstanceLobe::fading(&sea).unwrap();
         for footprint in [0.1f64, 0.137, 0.5, 3.0, 1e4] {
             let onset = onsets.at(footprint.log2());
-            let [ratio, error] = mean_over_eq_51(&sea, 100_000, |numbers| {
+            let [ratio, error] = mean_over_eq_51(&sea, 300_000, |numbers| {
                 let seen = waves.components(numbers).map(|c| c.seen_at(footprint));
                 onset.probability(RealisedSurface::new(seen, 0.0).point([0.0; 2]).acceleration)
             });
