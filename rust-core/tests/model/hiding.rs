@@ -93,7 +93,7 @@ fn once_is_the_report_where_facets_are_the_sea() {
 /// The albedo for a source near the horizon, at an elevation in degrees: sums even in the logarithms of the observer's
 /// elevation and of its azimuth from the forward direction.
 fn albedo_of_grazing(lobe: &Lobe<f64>, elevation: f64, azimuth: f64) -> f64 {
-    const STEPS: [i32; 2] = [500, 250];
+    const STEPS: [i32; 2] = [250, 125];
     let i = direction(90.0 - elevation, azimuth + 180.0);
     let nodes = |k: usize, from: f64, to: f64| {
         let step = (to / from).ln() / f64::from(STEPS[k]);
