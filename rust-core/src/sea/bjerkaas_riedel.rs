@@ -10,9 +10,9 @@ const ALPHA: f64 = 8.1e-3;
 const BETA: f64 = 0.74;
 /// The fetch up to which it matters, m.
 const LONGEST_FETCH: f64 = 100e3;
-/// Stacey's spectrum takes part from this friction velocity beside Pierson and Moskowitz (Eq. 15), cm/s,
+/// The friction velocity from which Stacey's form takes part beside Pierson and Moskowitz's (Eq. 15), cm/s.
 const STACEY_LOW: f64 = 35.8;
-/// and from this one beside Kitaigorodskii (Eq. 17).
+/// The friction velocity from which it takes part beside Kitaigorodskii's (Eq. 17), cm/s.
 const STACEY_HIGH: f64 = 75.76;
 
 /// The report's spectrum.
@@ -21,9 +21,9 @@ pub(super) struct BjerkaasRiedel {
     dispersion: Dispersion,
     fetch: Option<Fetch>,
     friction_velocity: f64,
-    /// The peak of S_1 (Eq. 7), up to which Pierson and Moskowitz's form holds, rad/cm.
+    /// The peak of S_1 (Eq. 7), rad/cm; above it Stacey's form may exceed Pierson and Moskowitz's.
     pub(super) k0: f64,
-    /// End of Stacey's range (Eq. 8), rad/cm.
+    /// Where S_1 gives way to Kitaigorodskii's S_2 (Eq. 8), rad/cm.
     pub(super) k1: f64,
     /// End of Kitaigorodskii's range and of the spectrum, where omega = 20 pi, rad/cm.
     pub(super) k2: f64,
@@ -52,11 +52,14 @@ impl BjerkaasRiedel {
     pub(super) fn new(wind: &WindProfile, dispersion: Dispersion, fetch: f64) -> Self {
         let w = wind.friction_velocity;
         let (k2, km2) = (dispersion.ten_hertz(), dispersion.km2);
+        // Eq. 6.
         let p = 5.0 - w.log10();
         let shoulder = k2 * (1.0 + k2 * k2 / km2);
         let scale_2 = 0.4375 * (2.0 * PI / GRAVITY.sqrt()).powf(p - 1.0) * shoulder.powf(0.5 * (4.0 - p));
-        let scale_1 =
+        // Of k1's equation, Eq. 8.
+        let k1_scale =
             (ALPHA / 0.875).powi(2) * (GRAVITY / (4.0 * PI * PI)).powf(p - 1.0) * shoulder.powf(p - 4.0);
+        // Eq. 13.
         let fetch = (fetch <= LONGEST_FETCH && wind.w10 > 0.0)
             .then(|| Fetch { peak: 22.0 * (GRAVITY * GRAVITY / (100.0 * fetch * 100.0 * wind.w10)).cbrt() });
         Self {
@@ -64,7 +67,7 @@ impl BjerkaasRiedel {
             fetch,
             friction_velocity: w,
             k0: (2.0 * BETA / 3.0).sqrt() * GRAVITY / (100.0 * wind.w19_5).powi(2),
-            k1: meeting(scale_1, k2, km2),
+            k1: meeting(k1_scale, k2, km2),
             k2,
             scale_2,
         }

@@ -37,7 +37,7 @@ pub struct Spectrum {
     form: Form,
     /// The peak, rad/cm; of the report's S_1 (Eq. 7).
     pub k0: f64,
-    /// End of the long waves' form, rad/cm: of Stacey's range (Eq. 8), of JONSWAP's part; Elfouhaily's has one form up to k2.
+    /// End of the long waves' form, rad/cm: where the report's S_1 gives way to S_2 (Eq. 8), of JONSWAP's part; Elfouhaily's has one form up to k2.
     pub k1: f64,
     /// End of the spectrum, rad/cm: where omega = 20 pi; Elfouhaily's is ten times the wave number of the slowest waves.
     pub k2: f64,
@@ -170,8 +170,8 @@ pub fn spreading(angle: f64) -> f64 {
 }
 
 /// The share of a wave's energy, for a wave number in rad/m, that stays geometry where the footprint in m changes from
-/// place to place: 1 for waves longer than 2 D, 0 for shorter ones, and between in an octave, so that no wave ends at a
-/// line. The rest is facets there.
+/// place to place: 1 for waves longer than 2.8 D, 1/2 at 2 D, 0 below 1.4 D, linear in the logarithm, so that no wave ends
+/// at a line. The rest is facets there.
 pub fn share(wave_number: f64, footprint: f64) -> f64 {
     (0.5 - (wave_number * footprint / PI).log2()).clamp(0.0, 1.0)
 }

@@ -26,13 +26,16 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Every how many nodes of the table are used where a sum over all slopes is smooth, and where it has a kink.
+/// Stride over the table's nodes for smooth integrands.
 const COARSE: usize = 4;
+/// The same for integrands with a kink.
 const FINE: usize = 2;
-/// Where integrals are cut off, so many of Gauss's nodes on so many steps.
+/// Gauss-Legendre nodes of a panel, where an integral is cut off.
 const NODES: usize = 24;
+/// A panel's length in steps of the table.
 const PANEL: f64 = 14.0;
-/// Of a table of facets, to either side of 0: over how wide all slopes are beside the facets', but so many.
+/// Nodes of a table of facets to either side of 0: this times the standard deviation of all slopes over the facets', clamped to
+/// [`LEAST_NODES`] and [`MOST_NODES`].
 const NODES_OVER_SIGMA: f64 = 12.0;
 const LEAST_NODES: usize = 36;
 const MOST_NODES: usize = 120;
@@ -58,7 +61,7 @@ pub struct Means {
     pub f_cos: f64,
     /// Mean of f squared, 1/sr^2.
     pub f_squared: f64,
-    /// Share of draws in which a whitecap is seen.
+    /// Share of draws in which a whitecap is seen: of those where the hit faces the observer and is not hidden.
     pub whitecaps: f64,
 }
 
