@@ -136,7 +136,8 @@ impl Exact {
                 max: f64::NAN,
                 mean_f_cos: means.f_cos,
                 obscured: distribution.nothing(),
-                whitecap: whitecaps,
+                // Where there is nothing but whitecaps a quadrature passes 1 by a few millionths.
+                whitecap: whitecaps.min(1.0),
                 effective: f64::NAN,
                 mean_upper: means.f * (1.0 + errors.mean),
                 over_upper: over.iter().map(|p| (p + errors.share).min(1.0)).collect(),
