@@ -131,7 +131,8 @@ impl MeanLobe<f64> {
             .into_par_iter()
             .map(|n| {
                 let place = DVec2::new((n / rows) as f64 - middle, (n % rows) as f64 - middle);
-                facets.at_angles(place * steps)
+                let cell = facets.at_angles(place * steps);
+                Cell { density: cell.density.min(STEEPEST_DENSITY), ..cell }
             })
             .collect();
         let density = |n: Option<usize>| n.and_then(|n| cells.get(n)).map_or(0.0, |cell| cell.density);
@@ -168,6 +169,9 @@ impl<S: Scalar> MeanLobe<S> {
         }
     }
 }
+
+/// Densities of facets are clamped to this: as printed, with Eqs. 71-73, they have no bound where facets stand upright.
+const STEEPEST_DENSITY: f64 = 1e18;
 
 /// A direction along the wind, across it and upwards.
 type Local<T> = Vec3<T>;
