@@ -31,17 +31,14 @@ impl Parameters {
             return refuse("fetch", self.fetch, "above 0 m, finite, with spectrum = jonswap or tma");
         }
         check("wavelength", self.wavelength, self.wavelength)?;
-        if let Some(ior) = self.ior {
-            check("ior", ior, ior)?;
-        }
-        if let Some(extinction) = self.extinction {
-            check("extinction", extinction, extinction)?;
-        }
-        if let Some(temperature) = self.temperature {
-            check("temperature", temperature, temperature)?;
-        }
-        if let Some(salinity) = self.salinity {
-            check("salinity", salinity, salinity)?;
+        let optional = [
+            ("ior", self.ior),
+            ("extinction", self.extinction),
+            ("temperature", self.temperature),
+            ("salinity", self.salinity),
+        ];
+        for (name, value) in optional {
+            value.map_or(Ok(()), |x| check(name, x, x))?;
         }
         let [ior, extinction] = self.index()?;
         let spectrum = Spectrum::new(self.spectrum, &wind, self.water, self.depth, self.fetch);

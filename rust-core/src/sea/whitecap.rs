@@ -141,8 +141,8 @@ impl<T: Real> Onset<T> {
 /// The standard deviation in m/s^2 of a Gaussian vertical acceleration of all waves that makes whitecaps (Eqs. 53-54)
 /// as frequent as `fraction`, at a friction velocity in cm/s.
 pub fn deviation(friction_velocity: f64, fraction: f64) -> f64 {
-    const MOST: f64 = 100.0 * 0.01 * GRAVITY;
-    bisect(0.0, MOST, |s| Onset::with_residual(friction_velocity, s).probability(0.0) >= fraction)
+    // More than any sea's: GRAVITY is in cm/s^2, so this is 100 g.
+    bisect(0.0, GRAVITY, |s| Onset::with_residual(friction_velocity, s).probability(0.0) >= fraction)
 }
 
 /// The Lambertian BRDF of a whitecap (Eq. 55), 1/sr, at a wavelength in micrometres.
