@@ -17,7 +17,8 @@ from validation.support.paths import ROOT
 from validation.support.plugin_calls import operations
 
 COUNT = 20_000
-CARGO = [os.environ.get("CARGO", "cargo")]
+CARGO = os.environ.get("CARGO", "cargo")
+CAMPAIGNS = ROOT / "target/release"
 #: Of the campaign `off`: features that can be compiled away.
 CASES = ["whitecaps", "no_wind_for_whitecaps", "shadowing", "gram_charlier"]
 #: A kernel without a feature has nothing left of it: fewer operations than with it.
@@ -78,7 +79,10 @@ TERMS = [
 
 
 def main() -> None:
-    """Prints the tables."""
+    """Builds the campaigns and prints the tables."""
+    for campaign in ("off", "skips"):
+        build = [CARGO, "build", "--quiet", "--release", "--target-dir", "target", "-p", "prob-water-measure", "--bin", campaign]
+        subprocess.run(build, cwd=ROOT, check=True)
     found = [*scalar(), *lanes(), *traced(), terms()]
     show(found)
     if "--docs" in sys.argv:
@@ -107,14 +111,11 @@ def lanes() -> list[Table]:
 
 
 def instructions(case: str, code: str) -> float:
-    """Of one evaluation: those of a run less those of its beginning."""
-    build = [*CARGO, "build", "--quiet", "--release", "-p", "prob-water-measure", "--bin", "off"]
-    subprocess.run(build, cwd=ROOT, check=True)
-
+    """Of one evaluation: those of a run less those of its beginning. `off` is built."""
     def run(count: int) -> int:
         done = subprocess.run(
             ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null",
-             str(ROOT / "target/release/off"), case, code, str(count)],
+             str(CAMPAIGNS / "off"), case, code, str(count)],
             capture_output=True, text=True, check=True)
         return int(next(line for line in done.stderr.splitlines() if "Collected" in line).split()[-1])
 
@@ -136,8 +137,7 @@ def traced() -> list[Table]:
 
 def terms() -> Table:
     """Every optional term, what it costs and what switches it off."""
-    command = [*CARGO, "run", "--quiet", "--release", "-p", "prob-water-measure", "--bin", "skips"]
-    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
+    done = subprocess.run([CAMPAIGNS / "skips"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
     timed = {row["name"]: row for row in map(json.loads, done.stdout.splitlines())}
     valgrind, llvm = bool(shutil.which("valgrind")), usable_llvm()[0]
     rows = []

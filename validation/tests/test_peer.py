@@ -1,7 +1,6 @@
 """The slope lobe against the glint of eradiate-mitsuba's `ocean_legacy`."""
 
 import csv
-import os
 import subprocess
 from collections import defaultdict
 from pathlib import Path
@@ -9,14 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from validation.support.command import COMMAND
 from validation.support.paths import ROOT
 
 STORED = ROOT / "validation/data/ocean_legacy.csv"
 PEER_PYTHON = ROOT / ".venv-peer/bin/python"
 SEA = ["wind_speed", "wind_height", "wind_direction", "ior"]
 DIRECTIONS = ["ix", "iy", "iz", "ox", "oy", "oz"]
-CARGO = os.environ.get("CARGO", "cargo")
-COMMAND = "run --release --quiet -p prob-water-cli -- brdf".split()
 MODEL = "--slope-measure slope --fresnel exact --shadowing false --whitecaps false".split()
 
 
@@ -29,7 +27,7 @@ def prob_water(sea: tuple[str, ...], rows: list[dict[str, str]]) -> list[float]:
     """What the command gives for rows of one sea."""
     flags = [f"--{name.replace('_', '-')}={value}" for name, value in zip(SEA, sea)]
     lines = [DIRECTIONS, *([row[name] for name in DIRECTIONS] for row in rows)]
-    done = subprocess.run([CARGO, *COMMAND, *MODEL, *flags], cwd=ROOT, input="\n".join(map(",".join, lines)),
+    done = subprocess.run([COMMAND, "brdf", *MODEL, *flags], cwd=ROOT, input="\n".join(map(",".join, lines)),
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return [float(row["f"]) for row in read(done.stdout)]

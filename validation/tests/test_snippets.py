@@ -99,17 +99,17 @@ def test_commands_of_the_readme():
             assert run([COMMAND, *words[6:]]).startswith("time,observer,mean")
 
 
-def built(*arguments):
-    """The file of the library that cargo builds."""
+def library(ending):
+    """The library as cargo builds it for C, with what a Rust program links too; `cargo xtask c-test` has compiled it."""
     cargo = os.environ.get("CARGO", "cargo")
-    messages = run([cargo, *arguments, "--quiet", "--message-format=json"]).splitlines()
+    messages = run([cargo, "rustc", "-p", "prob-water", "--release", "--features", "c-api", "--crate-type",
+                    "lib,staticlib,cdylib", "--target-dir", "target", "--quiet", "--message-format=json"]).splitlines()
     artifacts = [m for m in map(json.loads, messages) if m["reason"] == "compiler-artifact" and m["target"]["name"] == "prob_water"]
-    return artifacts[-1]["filenames"]
+    return next(file for file in artifacts[-1]["filenames"] if file.endswith(ending))
 
 
 def test_rust(tmp_path):
     """Every section of the guide, after what its first one configures."""
-    library = next(f for f in built("build", "-p", "prob-water", "--release", "--target-dir", "target") if f.endswith(".rlib"))
     sections = (ROOT / "docs/guide-rust.md").read_text().split("\n## ")[1:]
     examples = [re.findall(r"^```rust\n(.*?)^```", section, re.MULTILINE | re.DOTALL) for section in sections]
     configured, code = examples[0][:1], []
@@ -121,16 +121,14 @@ def test_rust(tmp_path):
     source = tmp_path / "guide.rs"
     source.write_text("#![allow(unused)]\n" + main)
     program = tmp_path / "guide"
-    run(["rustc", "--edition", "2024", source, "-o", program, "--extern", f"prob_water={library}",
+    run(["rustc", "--edition", "2024", source, "-o", program, "--extern", f"prob_water={library('.rlib')}",
          "-L", f"dependency={ROOT / 'target/release/deps'}"])
     assert "+-" in run([program])
 
 
 def test_c(tmp_path):
     """The guide's program prints the numbers it promises; its fragments compile and run within it."""
-    rust = built("rustc", "-p", "prob-water", "--release", "--features", "c-api", "--crate-type", "staticlib,cdylib",
-                 "--target-dir", "target")
-    library = next(f for f in rust if f.endswith(".a"))
+    archive = library(".a")
     program, *fragments = blocks("docs/guide-c.md", "c")
     extra = """
     double sx[1] = {0}, sy[1] = {0}, sz[1] = {1}, ox[1] = {0}, oy[1] = {0}, oz[1] = {1};
@@ -146,7 +144,7 @@ def test_c(tmp_path):
     for name, text in texts.items():
         source = tmp_path / f"{name}.c"
         source.write_text(text)
-        run([os.environ.get("CC", "cc"), "-std=c99", "-I", "rust-core/include", source, library, "-lm", "-lpthread", "-ldl",
+        run([os.environ.get("CC", "cc"), "-std=c99", "-I", "rust-core/include", source, archive, "-lm", "-lpthread", "-ldl",
              "-o", tmp_path / name])
         shown = run([tmp_path / name]).split()
         promised = re.search(r"prints (\S+) and (\S+), in", (ROOT / "docs/guide-c.md").read_text()).groups()

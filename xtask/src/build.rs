@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Instant, SystemTime};
 
+/// What is compiled for the plugins alone.
+pub const ALONE: [&str; 3] = ["--release", "-p", "prob-water-mitsuba"];
+
 /// Each is `mitsuba-plugin/cpp/<name>.cpp` and becomes `plugins/<name>.impl.so`, which `load.cpp` as `plugins/<name>.so` opens.
 const PLUGINS: [&str; 2] = ["prob_water", "prob_water_surface"];
 
@@ -28,16 +31,16 @@ pub fn default_out() -> PathBuf {
 
 /// Builds the plugins into `out/plugins`.
 pub fn build(out: &Path) -> Result<()> {
-    build_with(out, &[])
+    build_with(out, &ALONE, &[])
 }
 
-/// The same, compiled with further flags.
-pub fn build_with(out: &Path, flags: &[&str]) -> Result<()> {
+/// The same, from the selection of packages that cargo is told to compile, and by the C++ compiler with further flags.
+pub fn build_with(out: &Path, selection: &[&str], flags: &[&str]) -> Result<()> {
     let start = Instant::now();
     check_processor()?;
     setup::setup()?;
     println!("build: the Rust core");
-    let rust = cargo::static_library("mitsuba-plugin", &["build", "--release", "-p", "prob-water-mitsuba"])?;
+    let rust = cargo::static_library("mitsuba-plugin", &[&["build"], selection].concat())?;
     let bridge =
         rust.out_dir.context("the build script of prob-water-mitsuba did not run")?.join("cxxbridge/include");
     let packages = site_packages()?;
@@ -46,11 +49,17 @@ pub fn build_with(out: &Path, flags: &[&str]) -> Result<()> {
     let sources = util::root().join("mitsuba-plugin/cpp");
     let directory = out.join("plugins");
     util::create_dir(&directory)?;
+    let cxx = util::cxx()?;
     let newest_input = newest(&[&rust.library, &bridge, &sources, &setup::stamp()])?;
 
-    for name in PLUGINS {
-        let mut compiler = util::command(util::cxx()?);
-        compiler.args(COMPILE.split_whitespace()).args(flags).arg("-I").arg(&sources).arg("-I").arg(&bridge);
+    let base = || {
+        let mut compiler = util::command(&cxx);
+        compiler.args(COMPILE.split_whitespace()).args(flags);
+        compiler
+    };
+    let plugin = |name: &str| {
+        let mut compiler = base();
+        compiler.arg("-I").arg(&sources).arg("-I").arg(&bridge);
         for include in
             ["mitsuba/include", "drjit/include", "nanobind/include", "nanobind/ext/robin_map/include"]
         {
@@ -63,11 +72,14 @@ pub fn build_with(out: &Path, flags: &[&str]) -> Result<()> {
         compiler.args(LINK.split_whitespace());
         compile(&mut compiler, &directory.join(name).with_extension("impl.so"), newest_input)?;
 
-        let mut loader = util::command(util::cxx()?);
-        loader.args(COMPILE.split_whitespace()).args(flags).args(&versions);
-        loader.arg(sources.join("load.cpp")).args(["-ldl", "-Wl,-z,defs", "-Wl,-z,now"]);
-        compile(&mut loader, &directory.join(name).with_extension("so"), newest_input)?;
-    }
+        let mut loader = base();
+        loader.args(&versions).arg(sources.join("load.cpp")).args(["-ldl", "-Wl,-z,defs", "-Wl,-z,now"]);
+        compile(&mut loader, &directory.join(name).with_extension("so"), newest_input)
+    };
+    std::thread::scope(|scope| {
+        let plugins = PLUGINS.map(|name| scope.spawn(move || plugin(name)));
+        plugins.into_iter().try_for_each(|plugin| plugin.join().expect("does not panic"))
+    })?;
     println!("build: done in {}", util::seconds(start.elapsed()));
     Ok(())
 }

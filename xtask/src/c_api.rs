@@ -78,7 +78,7 @@ pub fn programs(directory: &str, flags: &[&str]) -> Result<Vec<PathBuf>> {
             "--features",
             "c-api",
             "--crate-type",
-            "staticlib,cdylib",
+            "lib,staticlib,cdylib",
         ],
     )?;
     let mut sources = Vec::new();

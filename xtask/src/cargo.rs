@@ -8,6 +8,10 @@ use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::Stdio;
 
+/// Everything that users get and all tests of it, with optimisation. Cargo unifies the features of dependencies over what one call
+/// selects: each other selection would compile the library once more.
+pub const EVERYTHING: [&str; 5] = ["--release", "--workspace", "--exclude", "xtask", "--all-targets"];
+
 /// The output of one package.
 pub struct Built {
     /// Its static library.
@@ -17,29 +21,22 @@ pub struct Built {
 }
 
 /// Runs cargo (`build` or `rustc` with these arguments) for a package that makes a static library; the package is told
-/// from its dependencies by the directory of its manifest.
+/// from others by the directory of its manifest.
 pub fn static_library(package_directory: &str, arguments: &[&str]) -> Result<Built> {
     let manifest = util::root().join(package_directory).join("Cargo.toml");
     let messages = messages(arguments, package_directory)?;
     let is = |message: &Value, reason: &str| message["reason"] == reason;
-    let artifact = messages
+    let (artifact, library) = messages
         .iter()
-        .find(|message| {
+        .filter(|message| {
             is(message, "compiler-artifact")
                 && message["manifest_path"].as_str().is_some_and(|path| manifest.as_os_str() == path)
-                && message["target"]["crate_types"]
-                    .as_array()
-                    .is_some_and(|types| types.iter().any(|kind| kind == "staticlib"))
+        })
+        .find_map(|message| {
+            let mut names = message["filenames"].as_array()?.iter().filter_map(Value::as_str);
+            Some((message, PathBuf::from(names.find(|name| name.ends_with(".a"))?)))
         })
         .with_context(|| format!("{package_directory} makes no static library"))?;
-    let library = artifact["filenames"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .find(|name| name.ends_with(".a"))
-        .with_context(|| format!("cargo names no static library of {package_directory}"))?
-        .into();
     let out_dir = messages
         .iter()
         .find(|message| {
@@ -50,9 +47,9 @@ pub fn static_library(package_directory: &str, arguments: &[&str]) -> Result<Bui
     Ok(Built { library, out_dir })
 }
 
-/// The programs of all examples of the workspace, built with the features that `cargo test` has.
+/// The programs of all examples of the library.
 pub fn examples() -> Result<Vec<PathBuf>> {
-    let arguments = ["build", "--quiet", "--workspace", "--all-features", "--examples"];
+    let arguments = ["build", "--quiet", "--release", "--workspace", "--exclude", "xtask", "--examples"];
     let messages = messages(&arguments, "the examples")?;
     let mut programs: Vec<PathBuf> = messages
         .iter()

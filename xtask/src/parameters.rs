@@ -25,8 +25,14 @@ struct Row {
     meaning: String,
 }
 
-/// Writes the tables, or only compares them with the committed ones.
+/// Builds the command, then writes the tables, or only compares them with the committed ones.
 pub fn parameters(check: bool) -> Result<()> {
+    figures::build_command()?;
+    tables(check)
+}
+
+/// The same with the command as it was built.
+pub fn tables(check: bool) -> Result<()> {
     let rows = rows()?;
     let mut stale = Vec::new();
     for file in MARKDOWN {
@@ -56,7 +62,6 @@ pub fn parameters(check: bool) -> Result<()> {
 }
 
 fn rows() -> Result<Vec<Row>> {
-    figures::build_command()?;
     let command = util::root().join("target/release/prob-water");
     let text = util::output(util::command(command).args(["parameters", "--json"]), "prob-water parameters")?;
     let list: Vec<Value> = serde_json::from_str(&text).context("prob-water parameters --json")?;

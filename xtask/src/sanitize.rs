@@ -73,7 +73,7 @@ fn plugin() -> Result<()> {
     let [sanitizer, exceptions] = libraries;
     let preloaded = format!("{} {}", sanitizer?, exceptions?);
     let out = util::root().join("target/mitsuba-sanitized");
-    build::build_with(&out, &FLAGS)?;
+    build::build_with(&out, &build::ALONE, &FLAGS)?;
     util::run(
         setup::module("validation.tests.sanitized")
             .env("PROB_WATER_PLUGINS", &out)

@@ -20,18 +20,19 @@ enum Outcome {
 }
 use Outcome::{Passed, Skipped};
 
-const STEPS: [Step; 13] = [
+const STEPS: [Step; 14] = [
+    Step { name: "compile", run: compile },
     Step { name: "cargo test", run: cargo_test },
     Step { name: "examples", run: || examples().map(|()| Passed) },
     Step { name: "tidy", run: || tidy::tidy().map(|()| Passed) },
     Step { name: "header check", run: || c_api::header(true).map(|()| Passed) },
-    Step { name: "parameters", run: || parameters::parameters(true).map(|()| Passed) },
+    Step { name: "parameters", run: || parameters::tables(true).map(|()| Passed) },
     Step { name: "equations", run: || equations::equations(true).map(|()| Passed) },
     Step { name: "C program", run: || c_api::c_test().map(|()| Passed) },
     Step { name: "valgrind", run: valgrind },
     Step { name: "stress", run: || stress::slice().map(|()| Passed) },
-    Step { name: "plugin build", run: || build::build(&build::default_out()).map(|()| Passed) },
-    Step { name: "pytest", run: pytest },
+    Step { name: "plugin build", run: || plugin_build().map(|()| Passed) },
+    Step { name: "pytest", run: || pytest(&[]).map(|()| Passed) },
     Step { name: "cargo fmt", run: cargo_fmt },
     Step { name: "cargo clippy", run: cargo_clippy },
 ];
@@ -72,14 +73,30 @@ pub fn test() -> Result<()> {
     }
 }
 
+/// Whatever later steps run, once and together: the library, its tests, the command, the campaigns, the plugin's part of Rust.
 /// Meanwhile the Python packages that later steps need are fetched.
-fn cargo_test() -> Result<Outcome> {
+fn compile() -> Result<Outcome> {
     std::thread::scope(|scope| {
         let setup = scope.spawn(setup::setup);
-        util::run(util::cargo().args(["test", "--workspace", "--all-features"]), "cargo test")?;
+        util::run(
+            util::cargo().args(["build", "--target-dir", "target"]).args(cargo::EVERYTHING),
+            "cargo build",
+        )?;
         setup.join().expect("does not panic")
     })?;
     Ok(Passed)
+}
+
+fn cargo_test() -> Result<Outcome> {
+    let users = ["test", "--target-dir", "target", "--release", "--workspace", "--exclude", "xtask"];
+    util::run(util::cargo().args(users), "cargo test")?;
+    util::run(util::cargo().args(["test", "--quiet", "-p", "xtask"]), "cargo test of xtask")?;
+    Ok(Passed)
+}
+
+fn plugin_build() -> Result<()> {
+    let selection = [&["--target-dir", "target"], &cargo::EVERYTHING[..]].concat();
+    build::build_with(&build::default_out(), &selection, &[])
 }
 
 /// Runs the examples of the library; each must succeed and print something.
@@ -99,17 +116,22 @@ pub fn examples() -> Result<()> {
     Ok(())
 }
 
-fn pytest() -> Result<Outcome> {
-    run_pytest(&[])?;
-    Ok(Passed)
-}
-
-fn run_pytest(options: &[&str]) -> Result<()> {
-    figures::build_command()?;
-    errors::build_campaign()?;
+/// With the command and the campaigns as they were built, on all processors, four at most: each worker has a Mitsuba.
+fn pytest(options: &[&str]) -> Result<()> {
+    let workers = std::thread::available_parallelism().map_or(1, |n| n.get().min(4)).to_string();
     util::run(
         setup::module("pytest")
-            .args(["validation", "-q", "-rs", "-p", "no:cacheprovider"])
+            .args([
+                "validation",
+                "-q",
+                "-rs",
+                "-p",
+                "no:cacheprovider",
+                "--dist",
+                "worksteal",
+                "-n",
+                &workers,
+            ])
             .args(options)
             .env("PYTHONDONTWRITEBYTECODE", "1"),
         "pytest",
@@ -139,7 +161,9 @@ pub fn verify() -> Result<()> {
     sanitize::sanitize()?;
     compat::compat()?;
     setup::peer()?;
-    run_pytest(&["--full", "-s"])?;
+    figures::build_command()?;
+    errors::build_campaign()?;
+    pytest(&["--full", "-s", "-n", "0"])?;
     util::run(&mut setup::module("validation.error_budget.float32"), "validation.error_budget.float32")?;
     errors::errors(&[])
 }

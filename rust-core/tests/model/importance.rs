@@ -55,13 +55,15 @@ fn importance_is_unbiased() {
     for (components, presence) in
         [(4, WhitecapMode::Drawn), (5, WhitecapMode::Expected), (12, WhitecapMode::Drawn)]
     {
-        let mut sums = [0.0; 2];
-        let mut exact = 0.0;
-        for seed in 0..40 {
-            let water = sea(9.0, 0.003, |p| {
+        let sea = |seed| {
+            sea(9.0, 0.003, |p| {
                 (p.components, p.seed, p.instances) = (components, seed, 501);
-            });
-            exact = Exact::new(&water).unwrap().means(&engagement)[0].f;
+            })
+        };
+        let exact = Exact::new(&sea(0)).unwrap().means(&engagement)[0].f;
+        let mut sums = [0.0; 2];
+        for seed in 0..40 {
+            let water = sea(seed);
             let ensemble =
                 Ensemble { proposal: Proposal::Slopes, presence, ..Ensemble::new(&water).unwrap() };
             let found = ensemble
