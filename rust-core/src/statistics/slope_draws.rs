@@ -136,7 +136,7 @@ impl Ensemble {
         let wind = DVec2::from_angle(self.waves.wind_azimuth);
         let world = -half.truncate() / half.z.max(1e-9);
         let specular = DVec2::new(world.dot(wind), world.dot(wind.perp()));
-        let facets = self.water.lobe.facets.spread(specular);
+        let facets = self.water.lobe.facets.slope_width(specular);
         let [upwind, crosswind, _] = variances(&self.waves);
         let [drawn, needed] = [DVec2::new(upwind, crosswind), facets * facets].map(|v| 1.0 / v);
         Gaussian {
