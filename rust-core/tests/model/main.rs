@@ -18,6 +18,7 @@ mod readings;
 mod reference;
 mod sampling;
 mod slope_budget;
+mod spot;
 mod surfaces;
 mod threads;
 mod wave_sums;
