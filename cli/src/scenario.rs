@@ -12,7 +12,10 @@ use crate::{Outcome, Stop, empirical_table, files, parameters, table, threads};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use file::Scenario;
 use part::{Method, Part};
-use prob_water::{EmpiricalLobe, Engagement, Ensemble, Estimate, Exact, Statistics, Surface};
+use prob_water::{
+    EmpiricalLobe, Engagement, Ensemble, Estimate, Exact, OffPlaneModel, Parameters, Statistics, Surface,
+    Table,
+};
 use rayon::prelude::*;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
@@ -54,7 +57,9 @@ pub fn run(matches: &ArgMatches) -> Outcome {
             Method::Draws(ensemble) => run.draws(ensemble, &mut tables)?,
             Method::Exact(exact) => run.integrals(exact, &mut tables)?,
             Method::Auto(exact, ensemble) => run.best(exact.as_deref(), ensemble, &mut tables)?,
-            Method::Table(lobe, slopes) => run.by_table(lobe, slopes.as_deref(), &mut tables)?,
+            Method::Table(table) => {
+                run.by_table(table.as_deref().unwrap_or_else(|| Table::standard()), &mut tables)?;
+            }
         }
     }
     drop(progress);
@@ -150,14 +155,20 @@ impl Run<'_> {
     }
 
     /// Eqs. 90-91, and draws through the table's spreads for all that they do not give.
-    fn by_table(&self, lobe: &EmpiricalLobe, slopes: Option<&EmpiricalLobe>, tables: &mut Tables) -> Outcome {
+    fn by_table(&self, table: &Table, tables: &mut Tables) -> Outcome {
         let p = &self.part.water.parameters;
+        let lobe = EmpiricalLobe::new(&self.part.water, table)?;
+        let slopes = (p.across == OffPlaneModel::Report)
+            .then(|| Parameters { across: OffPlaneModel::Slopes, ..*p }.configure())
+            .transpose()?
+            .map(|water| EmpiricalLobe::new(&water, table))
+            .transpose()?;
         let draws = u32::try_from(p.instances).ok().and_then(NonZeroU32::new).expect("is checked");
         let seen = |engagement: &Engagement| -> Vec<(Estimate, Statistics)> {
             let statistics = |[i, o]: [[f64; 3]; 2]| {
                 let (mut found, estimate) = lobe.statistics(i, o, draws, p.seed, self.limits);
                 // How far the report's Gaussian across the plane is from the slopes' density.
-                if let Some(slopes) = slopes {
+                if let Some(slopes) = &slopes {
                     let off = estimate.mean / slopes.estimate(i, o).mean.max(f64::MIN_POSITIVE) - 1.0;
                     found.mean_error += off.abs();
                     found.mean_upper =

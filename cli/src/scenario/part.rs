@@ -1,13 +1,11 @@
 //! Engagements that have a sea in common, and where their statistics come from.
 
 use super::settings::{Settings, Source};
-use crate::empirical_table;
 use crate::model::{Flag, Model};
 use crate::toml_file::Item;
-use prob_water::{
-    Draws, EmpiricalLobe, Engagement, Ensemble, Error, Exact, OffPlaneModel, Parameters, Spot, Surface, Water,
-};
+use prob_water::{Draws, Engagement, Ensemble, Error, Exact, Parameters, Spot, Surface, Table, Water};
 use std::path::Path;
+use std::rc::Rc;
 
 /// Engagements in a row whose beams light alike spots.
 pub struct Part {
@@ -27,8 +25,8 @@ pub enum Method {
     Exact(Box<Exact>),
     /// Integrals where their error is small, if the sea has them, else drawn surfaces.
     Auto(Option<Box<Exact>>, Box<Ensemble>),
-    /// A table of the empirical model, and where it takes the report's form across the plane, the same with the slopes'.
-    Table(Box<EmpiricalLobe>, Option<Box<EmpiricalLobe>>),
+    /// A table of the empirical model; `None`: the built-in one.
+    Table(Option<Rc<Table>>),
 }
 
 /// An engagement, its spot, and where it stands in the file.
@@ -56,24 +54,31 @@ pub struct Parts<'a, 'd> {
 impl Parts<'_, '_> {
     /// All parts, in the order of the file; refused is whatever cannot be worked out.
     pub fn of(&self, parameters: &Parameters, all: &[Placed]) -> Result<Vec<Part>, String> {
+        let table = match parameters.surface {
+            Surface::Empirical => self.open_table(parameters)?,
+            _ => None,
+        };
         let alike = all.chunk_by(|a, b| a.spot == b.spot);
-        alike.map(|alike| self.part(parameters, alike, &all[0].engagement)).collect()
+        alike.map(|alike| self.part(parameters, alike, &all[0].engagement, table.clone())).collect()
     }
 
-    fn part(&self, parameters: &Parameters, all: &[Placed], first: &Engagement) -> Result<Part, String> {
+    fn part(
+        &self,
+        parameters: &Parameters,
+        all: &[Placed],
+        first: &Engagement,
+        table: Option<Rc<Table>>,
+    ) -> Result<Part, String> {
         let Placed { spot, place, engagement } = &all[0];
         // A footprint that the model does not have is the beam's.
         let place = engagement.beam().map(|_| *place);
         let refuse = |error: &Error| self.refuse(error, place);
         let water = spot.sea(parameters).map_err(|e| refuse(&e))?;
         let method = if water.parameters.surface == Surface::Empirical {
-            let slopes = Parameters { across: OffPlaneModel::Slopes, ..water.parameters };
-            let slopes = (water.parameters.across == OffPlaneModel::Report)
-                .then(|| {
-                    slopes.configure().map_err(|e| refuse(&e)).and_then(|water| self.by_table(&water, place))
-                })
-                .transpose()?;
-            Method::Table(Box::new(self.by_table(&water, place)?), slopes.map(Box::new))
+            let key = self.model.table.as_ref();
+            let known = table.as_deref().unwrap_or_else(|| Table::standard());
+            known.check(&water).map_err(|e| self.refuse(&e, place.or(key)))?;
+            Method::Table(table)
         } else if self.settings.source == Source::Exact {
             Method::Exact(Box::new(Exact::new(&water).map_err(|e| refuse(&e))?))
         } else {
@@ -111,20 +116,19 @@ impl Parts<'_, '_> {
         Ok(ensemble)
     }
 
-    /// The sea by the table that a flag names, or the file, or by the built-in one.
-    fn by_table(&self, water: &Water, place: Option<&Item>) -> Result<EmpiricalLobe, String> {
-        let instances = water.parameters.instances;
+    /// The table that a flag names, or the file; `None`: the built-in one.
+    fn open_table(&self, parameters: &Parameters) -> Result<Option<Rc<Table>>, String> {
+        let instances = parameters.instances;
         if instances > MOST_DRAWS {
             let allowed = format!("1 to {MOST_DRAWS} with surface = empirical");
             let error = Error::OutOfRange { parameter: "instances", value: instances.to_string(), allowed };
             return Err(self.refuse(&error, None));
         }
         let [flag, own] = self.table;
-        let key = self.model.table.as_ref();
-        empirical_table::lobe(water, flag.or(own)).map_err(|error| match (&error, flag) {
-            (Error::Table { .. }, Some(_)) => error.to_string(), // not the file's fault
-            (Error::Table { .. }, None) => self.refuse(&error, key),
-            _ => self.refuse(&error, place.or(key)),
+        let table = flag.or(own).map(Table::open).transpose();
+        table.map(|table| table.map(Rc::new)).map_err(|error| match flag {
+            Some(_) => error.to_string(), // not the file's fault
+            None => self.refuse(&error, self.model.table.as_ref()),
         })
     }
 
