@@ -266,6 +266,35 @@ fn means_are_kept_and_spread_is_less() {
     }
 }
 
+/// The mean is that of the hit's own surroundings, also where a sea drawn by importance has its origin at the hit: normals differ
+/// from the hit's by much less than the slopes within the spot.
+#[test]
+fn means_are_about_the_hit() {
+    let water = sea(8.0, Some(0.02), 8, 2000);
+    let laser = [200.0, 700.0, 900.0];
+    let engagement =
+        Engagement::new(0.0, laser, Aim::Target([300.0, -200.0, 0.0]), &[[500.0, -900.0, 700.0]]).unwrap();
+    let spot = Spot::new(&engagement, &water.parameters, SpotShape::Ellipse).unwrap();
+    for proposal in [Proposal::Plain, Proposal::Slopes] {
+        let hit = Ensemble { proposal, ..Ensemble::new(&water).unwrap() };
+        let mean = hit.over(spot).unwrap();
+        let [hits, means] =
+            [&hit, &mean].map(|e| e.sample(std::slice::from_ref(&engagement), &|_| ()).unwrap());
+        // Every other sea is drawn plainly, and is then the same for both.
+        let pairs = hits.of(0, 0).unwrap().zip(means.of(0, 0).unwrap()).step_by(2);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (hit, mean) in pairs {
+            let [a, b] = [hit.hit, mean.hit].map(|hit| hit.normal.map(|n| n / hit.normal[2]));
+            sum += (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+            count += 1.0;
+        }
+        let within: f64 =
+            mean.water.variances.iter().zip(water.variances).map(|(after, before)| after - before).sum();
+        println!("{proposal:?}: {:.2e} between normals, {within:.2e} within", sum / count);
+        assert!((0.01..0.5).contains(&(sum / count / within)), "{} {within}", sum / count);
+    }
+}
+
 /// The slope variance of waves that are longer than two spots in their own direction, over that of waves drawn for the circle
 /// that stands for the ellipse. Bounds are regression pins: the spectrum's slope variance is not the same in every octave, and
 /// waves run along the wind. The circle of the same area is off by 0.40 at most, the beam's own diameter by 1.03.
