@@ -75,6 +75,7 @@ fn unusual(wind: Wind, surface: Surface) -> Parameters {
         readings: Readings::AS_PRINTED,
         whitecaps: false,
         whitecap_onset: WhitecapOnset::Step,
+        whitecap_lifetime: 2.5,
         shadowing: false,
         hiding: Hiding::Once,
         gram_charlier: false,

@@ -1,6 +1,6 @@
 //! From parameters to a sea: everything is checked once and turned into coefficients.
 
-use super::parameters::{Hiding, Parameters, Water};
+use super::parameters::{Hiding, Parameters, Surface, Water};
 use super::slope_split::SlopeSplit;
 use super::vocabulary::check;
 use crate::brdf::lobe::steep_gain;
@@ -29,6 +29,10 @@ impl Parameters {
         let needs_fetch = matches!(self.spectrum, SpectrumModel::Jonswap | SpectrumModel::Tma);
         if needs_fetch && self.fetch.is_infinite() {
             return refuse("fetch", self.fetch, "above 0 m, finite, with spectrum = jonswap or tma");
+        }
+        check("whitecap_lifetime", self.whitecap_lifetime, self.whitecap_lifetime)?;
+        if matches!(self.surface, Surface::Ensemble | Surface::Empirical) {
+            self.forgets("with surface = ensemble or empirical")?;
         }
         check("wavelength", self.wavelength, self.wavelength)?;
         let optional = [
@@ -62,6 +66,15 @@ impl Parameters {
             }
             .with_whitecaps(if self.whitecaps { whitecap_fraction } else { 0.0 }),
         })
+    }
+
+    /// Refuses a lifetime of whitecaps where what the waves were is not known, and says where that is.
+    pub(crate) fn forgets(&self, place: &str) -> Result<(), Error> {
+        if self.whitecap_lifetime == 0.0 {
+            return Ok(());
+        }
+        let allowed = format!("0 s {place}: means over all seas are of one time, drawn seas have a past");
+        refuse("whitecap_lifetime", self.whitecap_lifetime, allowed)
     }
 
     /// The complex refractive index, n and k.

@@ -163,6 +163,8 @@ pub struct Parameters {
     pub whitecaps: bool,
     /// Where on drawn waves they stand.
     pub whitecap_onset: WhitecapOnset,
+    /// For how long their foam stays there, s: the time in which it falls to 1/e. 0: as long as the wave breaks, as in the report.
+    pub whitecap_lifetime: f64,
     /// Shadowing function applied.
     pub shadowing: bool,
     /// Whose slopes it has.
@@ -201,6 +203,7 @@ impl Default for Parameters {
             readings: Readings::CORRECTED,
             whitecaps: true,
             whitecap_onset: WhitecapOnset::Calibrated,
+            whitecap_lifetime: 0.0,
             shadowing: true,
             hiding: Hiding::Report,
             gram_charlier: true,

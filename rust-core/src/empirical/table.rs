@@ -598,7 +598,7 @@ mod tests {
     #[test]
     fn every_parameter_is_compared_or_known_to_differ() {
         const AXES: [&str; 3] = ["wind_direction", "footprint", "footprint_measure"];
-        const WITHOUT_EFFECT: [&str; 4] = ["surface", "average", "across", "time"];
+        const WITHOUT_EFFECT: [&str; 5] = ["surface", "average", "across", "time", "whitecap_lifetime"];
         for entry in vocabulary::ENTRIES {
             let lists = [&SHARED[..], &MADE_WITH, &vocabulary::WIND, &AXES, &WITHOUT_EFFECT];
             let count = lists.iter().filter(|list| list.contains(&entry.name)).count();

@@ -6,6 +6,7 @@ use super::grid::{CELLS, Grid, Layout, Ring, needed, split};
 use crate::config::{Surface, Water};
 use crate::error::Error;
 use crate::numeric::root::bisect;
+use crate::sea::foam::Foam;
 use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
 use crate::statistics::breaking::accelerations;
@@ -153,21 +154,36 @@ impl Mesh {
         normals: &mut [f32],
         whitecaps: &mut [f32],
     ) {
+        let waves = self.seen(ring);
         let places: Vec<_> = self.grid.places(ring).collect();
         let precise: Vec<_> = places.iter().map(|place| place.map(f64::from)).collect();
         let mut points = vec![Point::default(); places.len()];
-        let surface = RealisedSurface::new(self.seen(ring).into_iter(), time);
+        let mut surface = RealisedSurface::new(waves.iter().copied(), time);
         WaveSums::new(&surface).points(&precise, &mut points);
 
         let corners = positions.chunks_exact_mut(3).zip(normals.chunks_exact_mut(3));
-        for (([x, y], point), (position, normal)) in places.into_iter().zip(&points).zip(corners) {
+        for (([x, y], point), (position, normal)) in places.iter().copied().zip(&points).zip(corners) {
             position.copy_from_slice(&[x, y, point.height as f32]);
             normal.copy_from_slice(&point.normal().map(|x| x as f32));
         }
-        if let Some(onset) = onset {
+        let Some(onset) = onset else { return };
+        let highest = waves.iter().map(|c| c.frequency).fold(0.0, f64::max);
+        let Some(foam) = Foam::new(self.water.parameters.whitecap_lifetime, highest) else {
             for (whitecap, point) in whitecaps.iter_mut().zip(&points) {
                 *whitecap = onset.probability(point.acceleration) as f32;
             }
+            return;
+        };
+        let mut means = vec![0.0; places.len()];
+        for [before, weight] in foam.past(time) {
+            surface.set_time(time - before);
+            WaveSums::new(&surface).points(&precise, &mut points);
+            for (mean, point) in means.iter_mut().zip(&points) {
+                *mean += weight * onset.probability(point.acceleration);
+            }
+        }
+        for (whitecap, mean) in whitecaps.iter_mut().zip(means) {
+            *whitecap = mean as f32;
         }
     }
 }

@@ -3,6 +3,7 @@
 mod bjerkaas_riedel;
 mod dispersion;
 mod elfouhaily;
+pub mod foam;
 mod jonswap;
 mod salinity;
 pub mod spectrum;

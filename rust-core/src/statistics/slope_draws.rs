@@ -215,7 +215,8 @@ impl Ensemble {
             return 0.0;
         }
         let place = laser + back * beam;
-        *hit = self.hit_of(&point, [place.x, place.y], chance);
+        let whitecap = self.whitecap(&worker.surface, [0.0; 2], &point);
+        *hit = self.hit_of(&point, whitecap, [place.x, place.y], chance);
         // The sea's origin is the hit's place.
         let origin = place.truncate().extend(0.0);
         self.observe(

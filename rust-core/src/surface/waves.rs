@@ -9,6 +9,7 @@ use super::random::{Draws, InstanceRng};
 use super::realised::Surface;
 use crate::config::Water;
 use crate::sea::Spectrum;
+use crate::sea::foam::Foam;
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Its multiples' fractions spread most evenly.
@@ -36,6 +37,11 @@ impl Waves {
     /// Whether there are no waves.
     pub fn is_empty(&self) -> bool {
         self.log_range.is_none()
+    }
+
+    /// Foam on them with a lifetime in s; `None` where it does not last.
+    pub fn foam(&self, lifetime: f64) -> Option<Foam> {
+        Foam::new(lifetime, self.log_range.map_or(0.0, |[_, high]| self.spectrum.frequency(high.exp())))
     }
 
     /// L, extent of the wave numbers (Eq. 25).

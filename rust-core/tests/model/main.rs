@@ -7,6 +7,7 @@ mod energy;
 mod ensemble;
 mod ensemble_lobe;
 mod exact;
+mod foam;
 mod hiding;
 mod importance;
 mod lanes;
