@@ -63,6 +63,6 @@ pub use readings::Readings;
 pub use render::{
     EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, OnsetTable, ensemble_lobe, grid, mesh,
 };
-pub use sea::{Salinity, SpectrumModel, Wind, WindProfile, foam, spectrum, whitecap, wind};
+pub use sea::{Salinity, SpectrumModel, Swell, Wind, WindProfile, foam, spectrum, whitecap, wind};
 pub use statistics::{Aim, Engagement, Ensemble, Exact, Proposal, Statistics, WhitecapMode, ensemble};
 pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

@@ -31,8 +31,9 @@ impl Parameters {
             return refuse("fetch", self.fetch, "above 0 m, finite, with spectrum = jonswap or tma");
         }
         check("whitecap_lifetime", self.whitecap_lifetime, self.whitecap_lifetime)?;
+        self.check_swell()?;
         if matches!(self.surface, Surface::Ensemble | Surface::Empirical) {
-            self.forgets("with surface = ensemble or empirical")?;
+            self.refuse_drawn_seas("with surface = ensemble or empirical")?;
         }
         check("wavelength", self.wavelength, self.wavelength)?;
         let optional = [
@@ -68,13 +69,41 @@ impl Parameters {
         })
     }
 
-    /// Refuses a lifetime of whitecaps where what the waves were is not known, and says where that is.
-    pub(crate) fn forgets(&self, place: &str) -> Result<(), Error> {
-        if self.whitecap_lifetime == 0.0 {
-            return Ok(());
+    /// Refuses what drawn seas alone have, a past and a swell, in a place that has all seas at once.
+    pub(crate) fn refuse_drawn_seas(&self, place: &str) -> Result<(), Error> {
+        if self.whitecap_lifetime > 0.0 {
+            let allowed = format!("0 s {place}: drawn seas alone have a past");
+            return refuse("whitecap_lifetime", self.whitecap_lifetime, allowed);
         }
-        let allowed = format!("0 s {place}: means over all seas are of one time, drawn seas have a past");
-        refuse("whitecap_lifetime", self.whitecap_lifetime, allowed)
+        if self.swell_height > 0.0 {
+            return refuse(
+                "swell_height",
+                self.swell_height,
+                format!("0 m {place}: drawn seas alone have a swell"),
+            );
+        }
+        Ok(())
+    }
+
+    /// Refuses a swell that would break, and one that a footprint does not resolve where it is drawn.
+    fn check_swell(&self) -> Result<(), Error> {
+        check("swell_height", self.swell_height, self.swell_height)?;
+        check("swell_period", self.swell_period, self.swell_period)?;
+        self.swell_direction.map_or(Ok(()), |x| check("swell_direction", x, x))?;
+        let Some(swell) = self.swell() else { return Ok(()) };
+        let (period, depth) = (self.swell_period, self.depth);
+        let (highest, largest) = (swell.highest(), swell.largest_footprint());
+        if self.swell_height > highest {
+            let allowed = format!("0 to {highest:.3} m with swell_period = {period} and depth = {depth}");
+            return refuse("swell_height", self.swell_height, allowed);
+        }
+        if self.surface == Surface::Instance && self.footprint() > largest {
+            let allowed = format!(
+                "above 0 m, up to D = {largest:.3} m with swell_period = {period} and depth = {depth}"
+            );
+            return refuse("footprint", self.width(), allowed);
+        }
+        Ok(())
     }
 
     /// The complex refractive index, n and k.

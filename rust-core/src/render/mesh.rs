@@ -33,7 +33,7 @@ pub struct Mesh {
     pub water: Water,
     /// Where the vertices are.
     pub grid: Grid,
-    /// In order of rising wave numbers.
+    /// In order of rising wave numbers, those of a swell after the wind's.
     pub components: Vec<Component>,
     /// Of whitecaps, on every ring; empty where there are none.
     onsets: Vec<Onset<f64>>,
@@ -103,14 +103,17 @@ impl Mesh {
     }
 
     /// D of the facets where the waves have a footprint in m: so much larger that the facets' slope variance makes up for
-    /// what interpolation between vertices takes from the waves'.
+    /// what interpolation between vertices takes from the waves', and for the swell that is too short for the footprint.
     pub fn facets(&self, footprint: f64) -> f64 {
         let cell = footprint / CELLS;
-        let lost: f64 = self
-            .components
-            .iter()
-            .map(|c| c.seen_at(footprint).slope_variance() * (1.0 - interpolated(c.wave_number * cell)))
-            .sum();
+        // Of a swell, whose waves are nobody's facets, also what the footprint does not resolve.
+        let of_wind = self.water.fading_waves().of_wind();
+        let lost = |(j, c): (usize, &Component)| {
+            let seen = c.seen_at(footprint).slope_variance();
+            let unseen = if j < of_wind { 0.0 } else { c.slope_variance() - seen };
+            seen * (1.0 - interpolated(c.wave_number * cell)) + unseen
+        };
+        let lost: f64 = self.components.iter().enumerate().map(lost).sum();
         let total = |d: f64| self.water.facet_variances(d).iter().sum::<f64>();
         let wanted = total(footprint) + lost;
         // No facets are rougher than those of a thousand times the footprint, for what interpolation takes.

@@ -7,9 +7,11 @@ pub mod foam;
 mod jonswap;
 mod salinity;
 pub mod spectrum;
+pub mod swell;
 pub mod whitecap;
 pub mod wind;
 
 pub use salinity::Salinity;
 pub use spectrum::{Spectrum, SpectrumModel};
+pub use swell::Swell;
 pub use wind::{Wind, WindProfile};

@@ -20,6 +20,7 @@ mod reference;
 mod sampling;
 mod slope_budget;
 mod surfaces;
+mod swell;
 mod threads;
 mod wave_sums;
 mod waves;
