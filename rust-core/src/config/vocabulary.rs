@@ -983,7 +983,10 @@ mod tests {
         let others = ["wind_speed", "wind_height", "friction_velocity", "beaufort", "surface", "instances"];
         for surface in [Surface::Flat, Surface::Instance, Surface::Ensemble] {
             let usual = f(surface, ("seed", Value::Number(0.0)));
-            for entry in ENTRIES.iter().filter(|entry| !others.contains(&entry.name)) {
+            // What drawn seas alone have is refused there.
+            let refused =
+                if surface == Surface::Ensemble { &["whitecap_lifetime", "swell_height"][..] } else { &[] };
+            for entry in ENTRIES.iter().filter(|e| !others.contains(&e.name) && !refused.contains(&e.name)) {
                 let value = match (entry.name, entry.kind) {
                     ("wind_direction", _) => Value::Number(60.0),
                     ("fetch", _) => Value::Number(3e4),
@@ -1046,7 +1049,7 @@ mod tests {
             ("temperature", number(-0.5)),
             ("whitecap_lifetime", number(-0.1)),
             ("swell_height", number(-0.1)),
-            ("swell_height", number(11.5)),
+            ("swell_height", number(31.0)),
             ("swell_period", number(1.9)),
             ("swell_direction", number(f64::INFINITY)),
             ("whitecap_lifetime", number(61.0)),

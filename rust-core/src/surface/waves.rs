@@ -55,6 +55,9 @@ impl Waves {
 
     /// Foam on them with a lifetime in s; `None` where it does not last.
     pub fn foam(&self, lifetime: f64) -> Option<Foam> {
+        if lifetime == 0.0 {
+            return None;
+        }
         let wind = self.log_range.map_or(0.0, |[_, high]| self.spectrum.frequency(high.exp()));
         let swell = self.swell.map_or(0.0, |swell| swell.frequency(1.0));
         Foam::new(lifetime, wind.max(swell))

@@ -121,7 +121,7 @@ fn whitecaps_cover_the_fraction_beside_a_swell() {
     let sea = steep.configure().unwrap();
     let ensemble = Ensemble::new(&sea).unwrap();
     let alone = Parameters { swell_height: 0.0, ..steep }.configure().unwrap().whitecap_onset().unwrap();
-    let rows: Vec<[f64; 2]> = (0..400_000u64)
+    let rows: Vec<[f64; 2]> = (0..150_000u64)
         .into_par_iter()
         .map(|instance| {
             let surface = RealisedSurface::new(ensemble.components(instance).1, 0.0);
@@ -135,11 +135,11 @@ fn whitecaps_cover_the_fraction_beside_a_swell() {
     };
     let [[found, error], [naive, other]] = [of(0), of(1)];
     println!("{found:.4} +- {error:.4}, with the wind's onset {naive:.4} +- {other:.4}");
-    assert!((found - 1.0).abs() < 0.01 + 4.0 * error && error < 0.01, "{found} +- {error}");
+    assert!((found - 1.0).abs() < 0.01 + 4.0 * error && error < 0.02, "{found} +- {error}");
     assert!(naive > 1.05 + 4.0 * other, "{naive}");
     let fading = sea.fading_whitecap_onset(1.0).unwrap();
     let waves = sea.fading_waves();
-    let values: Vec<f64> = (0..400_000u64)
+    let values: Vec<f64> = (0..150_000u64)
         .into_par_iter()
         .map(|instance| {
             let mut numbers = InstanceRng::new(Draws::Random, 0, instance);
@@ -149,7 +149,7 @@ fn whitecaps_cover_the_fraction_beside_a_swell() {
         })
         .collect();
     let [found, error] = mean(&values).map(|x| x / whitecap::fraction(sea.wind.w10));
-    assert!((found - 1.0).abs() < 0.01 + 4.0 * error && error < 0.01, "fading: {found} +- {error}");
+    assert!((found - 1.0).abs() < 0.01 + 4.0 * error && error < 0.02, "fading: {found} +- {error}");
 }
 
 /// Draws by importance have the mean of plain ones, with a wind and in a calm, whose sea is not level any more.
@@ -202,7 +202,7 @@ fn what_fades_joins_the_facets() {
         assert!((-1e-6..0.02).contains(&missing), "D {footprint}: {missing}");
     }
     // Near by every vertex has it.
-    let near = Mesh::new(&water, &Layout { radius: 400.0, vertices: 200_000, ..Layout::default() }).unwrap();
+    let near = Mesh::new(&water, &Layout { radius: 400.0, vertices: 20_000, ..Layout::default() }).unwrap();
     let heights: Vec<f64> = near.vertices(0.0).positions.chunks(3).map(|p| f64::from(p[2])).collect();
     assert!(mean(&heights.iter().map(|z| z * z).collect::<Vec<_>>())[0] > 0.1);
 }
