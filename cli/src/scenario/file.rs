@@ -115,7 +115,7 @@ impl Scenario {
             for (engagement, place) in engagements.iter().zip(places) {
                 ensemble.check(engagement).map_err(|e| model.refuse(flags, &e, Some(place)))?;
             }
-            // Few components and narrow footprints have draws alone.
+            // Few components, narrow footprints, lasting whitecaps and swell have draws alone.
             match settings.source {
                 Source::Auto => Method::Auto(Exact::new(&water).ok().map(Box::new), Box::new(ensemble)),
                 _ => Method::Draws(Box::new(ensemble)),
