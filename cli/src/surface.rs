@@ -185,7 +185,7 @@ impl Sea {
             }
             let point = surface.point([x, y]);
             let ([slope_x, slope_y], [nx, ny, nz]) = (point.slope, point.normal());
-            let whitecap = self.all.onset.map_or(0.0, |onset| onset.probability(point.acceleration));
+            let whitecap = self.all.whitecap(&surface, [x, y], &point);
             let row_cells =
                 [time, x, y, point.height, slope_x, slope_y, nx, ny, nz, point.acceleration, whitecap];
             out.row(&row_cells.map(Cell::Number))?;

@@ -145,6 +145,9 @@ impl Options {
                 "footprint = pixel needs pixel_angle here: traced variants have no ray differentials".into(),
             );
         }
+        if traced {
+            water.check_traced()?;
+        }
         Ok(Box::new(water))
     }
 

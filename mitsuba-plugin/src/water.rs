@@ -122,6 +122,21 @@ impl Water {
         })
     }
 
+    /// Refuses what traced code does not sum: the waves of earlier times.
+    pub fn check_traced(&self) -> Result<(), Error> {
+        let lifetime = self.water.parameters.whitecap_lifetime;
+        if lifetime == 0.0 || !matches!(self.waves, Waves::Drawn(_)) {
+            return Ok(());
+        }
+        let allowed =
+            "0 s with surface = instance in traced variants; scalar ones and prob_water_surface have others";
+        Err(Error::OutOfRange {
+            parameter: "whitecap_lifetime",
+            value: lifetime.to_string(),
+            allowed: allowed.into(),
+        })
+    }
+
     pub fn traits(&self) -> ffi::Traits {
         let whitecaps = match &self.waves {
             Waves::Drawn(sea) => sea.whitecap_onset().is_some(),

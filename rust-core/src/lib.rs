@@ -63,7 +63,7 @@ pub use readings::Readings;
 pub use render::{
     EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, OnsetTable, ensemble_lobe, grid, mesh,
 };
-pub use sea::{Salinity, SpectrumModel, Wind, WindProfile, spectrum, whitecap, wind};
+pub use sea::{Salinity, SpectrumModel, Swell, Wind, WindProfile, foam, spectrum, whitecap, wind};
 pub use statistics::{
     Aim, Beam, Engagement, Ensemble, Exact, Proposal, Spot, SpotShape, Statistics, WhitecapMode, ensemble,
 };

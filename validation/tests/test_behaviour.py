@@ -52,6 +52,9 @@ def test_variants_are_all_tested_or_need_a_gpu():
         ({"surface": "ensemble", "components": 3}, ["components", "3", "4"]),
         ({"components": 0}, ["components", "0"]),
         ({"depth": -1.0}, ["depth", "-1"]),
+        ({"surface": "ensemble", "whitecap_lifetime": 3.85}, ["whitecap_lifetime", "3.85", "0 s with surface = ensemble"]),
+        ({"surface": "instance", "swell_height": 12.0}, ["swell_height", "12", "0 to 11.24"]),
+        ({"surface": "instance", "swell_height": 2.0, "footprint": 30.0}, ["footprint", "30", "19.87"]),
         ({"waves": 3.0}, ["waves", "3"]),
         ({"whitecaps": "maybe"}, ["whitecaps", "maybe"]),
         ({"fresnel": 2.0}, ["fresnel", "2"]),
@@ -169,14 +172,17 @@ def test_traverse(use, variant):
 
 
 def test_what_traced_variants_cannot_take(use):
-    """Arrays of Dr.Jit where a number is meant, and the pixel's footprint without its angle: they have no ray differentials."""
+    """Arrays of Dr.Jit where a number is meant, the pixel's footprint without its angle, as they have no ray differentials, and a past."""
     mi = use("llvm_ad_rgb")
     with pytest.raises(RuntimeError, match="wind_speed is an object or an array: allowed is a plain number"):
         mi.load_dict({"type": "prob_water", "wind_speed": mi.Float(5)})
     with pytest.raises(RuntimeError, match="footprint = pixel needs pixel_angle here"):
         mi.load_dict({"type": "prob_water", "footprint": "pixel"})
     mi.load_dict({"type": "prob_water", "footprint": "pixel", "pixel_angle": 0.05})
-    use("scalar_rgb")
+    foam = {"type": "prob_water", "surface": "instance", "whitecap_lifetime": 3.85}
+    with pytest.raises(RuntimeError, match="whitecap_lifetime = 3.85 .* in traced variants"):
+        mi.load_dict(foam)
+    use("scalar_rgb").load_dict(foam)
     mi.load_dict({"type": "prob_water", "footprint": "pixel"})
 
 

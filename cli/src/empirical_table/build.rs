@@ -59,7 +59,7 @@ const AXES: [AxisFlag; 5] = [
 ];
 
 /// Parameters that a table has no single value of, and why.
-const ELSEWHERE: [(&str, &str); 10] = [
+const ELSEWHERE: [(&str, &str); 14] = [
     ("wind_speed", "a table's winds are --friction-velocities"),
     ("wind_height", "a table's winds are --friction-velocities"),
     ("friction_velocity", "a table's winds are --friction-velocities"),
@@ -70,6 +70,10 @@ const ELSEWHERE: [(&str, &str); 10] = [
     ("average", "a table's mean is the report's, of f"),
     ("across", "it is chosen where the table is used"),
     ("time", "means over drawn waves are the same at all times"),
+    ("whitecap_lifetime", "means over drawn waves are of one time"),
+    ("swell_height", "drawn seas alone have a swell"),
+    ("swell_period", "drawn seas alone have a swell"),
+    ("swell_direction", "drawn seas alone have a swell"),
 ];
 
 /// The subcommand's flags.

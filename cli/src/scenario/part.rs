@@ -83,7 +83,7 @@ impl Parts<'_, '_> {
             Method::Exact(Box::new(Exact::new(&water).map_err(|e| refuse(&e))?))
         } else {
             let ensemble = Box::new(self.ensemble(&water, all, first, place)?);
-            // Few components and narrow footprints have draws alone.
+            // Few components, narrow footprints, lasting whitecaps and swell have draws alone.
             match self.settings.source {
                 Source::Auto => Method::Auto(Exact::new(&water).ok().map(Box::new), ensemble),
                 _ => Method::Draws(ensemble),

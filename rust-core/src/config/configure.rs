@@ -1,6 +1,6 @@
 //! From parameters to a sea: everything is checked once and turned into coefficients.
 
-use super::parameters::{Hiding, Parameters, Water};
+use super::parameters::{Hiding, Parameters, Surface, Water};
 use super::slope_split::SlopeSplit;
 use super::vocabulary::check;
 use crate::brdf::lobe::steep_gain;
@@ -29,6 +29,11 @@ impl Parameters {
         let needs_fetch = matches!(self.spectrum, SpectrumModel::Jonswap | SpectrumModel::Tma);
         if needs_fetch && self.fetch.is_infinite() {
             return refuse("fetch", self.fetch, "above 0 m, finite, with spectrum = jonswap or tma");
+        }
+        check("whitecap_lifetime", self.whitecap_lifetime, self.whitecap_lifetime)?;
+        self.check_swell()?;
+        if matches!(self.surface, Surface::Ensemble | Surface::Empirical) {
+            self.refuse_drawn_seas("with surface = ensemble or empirical")?;
         }
         check("wavelength", self.wavelength, self.wavelength)?;
         let optional = [
@@ -62,6 +67,43 @@ impl Parameters {
             }
             .with_whitecaps(if self.whitecaps { whitecap_fraction } else { 0.0 }),
         })
+    }
+
+    /// Refuses what drawn seas alone have, a past and a swell, in a place that has all seas at once.
+    pub(crate) fn refuse_drawn_seas(&self, place: &str) -> Result<(), Error> {
+        if self.whitecap_lifetime > 0.0 {
+            let allowed = format!("0 s {place}: drawn seas alone have a past");
+            return refuse("whitecap_lifetime", self.whitecap_lifetime, allowed);
+        }
+        if self.swell_height > 0.0 {
+            return refuse(
+                "swell_height",
+                self.swell_height,
+                format!("0 m {place}: drawn seas alone have a swell"),
+            );
+        }
+        Ok(())
+    }
+
+    /// Refuses a swell that would break, and one that a footprint does not resolve where it is drawn.
+    fn check_swell(&self) -> Result<(), Error> {
+        check("swell_height", self.swell_height, self.swell_height)?;
+        check("swell_period", self.swell_period, self.swell_period)?;
+        self.swell_direction.map_or(Ok(()), |x| check("swell_direction", x, x))?;
+        let Some(swell) = self.swell() else { return Ok(()) };
+        let (period, depth) = (self.swell_period, self.depth);
+        let (highest, largest) = (swell.highest(), swell.largest_footprint());
+        if self.swell_height > highest {
+            let allowed = format!("0 to {highest:.3} m with swell_period = {period} and depth = {depth}");
+            return refuse("swell_height", self.swell_height, allowed);
+        }
+        if self.surface == Surface::Instance && self.footprint() > largest {
+            let allowed = format!(
+                "above 0 m, up to D = {largest:.3} m with swell_period = {period} and depth = {depth}"
+            );
+            return refuse("footprint", self.width(), allowed);
+        }
+        Ok(())
     }
 
     /// The complex refractive index, n and k.

@@ -5,7 +5,7 @@ use crate::brdf::{Fresnel, Lobe, SlopeMeasure, SlopeStatistics, WindAxes};
 use crate::error::{Error, Warning};
 use crate::readings::Readings;
 use crate::sea::whitecap::WhitecapOnset;
-use crate::sea::{Salinity, SpectrumModel, Wind, WindProfile};
+use crate::sea::{Salinity, SpectrumModel, Swell, Wind, WindProfile};
 use std::f64::consts::{LN_2, SQRT_2};
 
 /// Which surface the facets lie on.
@@ -136,6 +136,12 @@ pub struct Parameters {
     pub fetch: f64,
     /// Whose energy spectrum the waves have.
     pub spectrum: SpectrumModel,
+    /// Significant height of a swell beside the wind's waves, m; 0: there is none.
+    pub swell_height: f64,
+    /// Period of its peak, s.
+    pub swell_period: f64,
+    /// Azimuth it comes from, degrees; else the wind's.
+    pub swell_direction: Option<f64>,
     /// Measured statistics of the slopes of all waves.
     pub slopes: SlopeStatistics,
     /// How these are divided between drawn waves and facets.
@@ -163,6 +169,8 @@ pub struct Parameters {
     pub whitecaps: bool,
     /// Where on drawn waves they stand.
     pub whitecap_onset: WhitecapOnset,
+    /// For how long their foam stays there, s: the time in which it falls to 1/e. 0: as long as the wave breaks, as in the report.
+    pub whitecap_lifetime: f64,
     /// Shadowing function applied.
     pub shadowing: bool,
     /// Whose slopes it has.
@@ -188,6 +196,9 @@ impl Default for Parameters {
             depth: f64::INFINITY,
             fetch: f64::INFINITY,
             spectrum: SpectrumModel::Report,
+            swell_height: 0.0,
+            swell_period: 12.0,
+            swell_direction: None,
             slopes: SlopeStatistics::CoxMunk,
             slope_budget: SlopeBudget::Report,
             wavelength: 0.55,
@@ -201,6 +212,7 @@ impl Default for Parameters {
             readings: Readings::CORRECTED,
             whitecaps: true,
             whitecap_onset: WhitecapOnset::Calibrated,
+            whitecap_lifetime: 0.0,
             shadowing: true,
             hiding: Hiding::Report,
             gram_charlier: true,
@@ -313,6 +325,13 @@ impl Parameters {
     /// The footprint in m by its measure: as given, or the surface's [default](Surface::default_footprint).
     pub(crate) fn width(&self) -> f64 {
         self.footprint.unwrap_or_else(|| self.surface.default_footprint())
+    }
+
+    /// The swell; `None` where it has no height.
+    pub fn swell(&self) -> Option<Swell> {
+        let azimuth = self.swell_direction.unwrap_or(self.wind_direction).to_radians();
+        (self.swell_height > 0.0)
+            .then(|| Swell::new(self.swell_height, self.swell_period, azimuth, self.depth))
     }
 
     /// The report's D in m.

@@ -118,7 +118,7 @@ macro_rules! wind {
 const ALL: &[Surface] = &[Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
 
 /// Every parameter, a row each.
-pub const ENTRIES: [Entry; 33] = [
+pub const ENTRIES: [Entry; 37] = [
     Entry {
         name: "wind_speed",
         unit: "m/s",
@@ -304,6 +304,36 @@ pub const ENTRIES: [Entry; 33] = [
         access: field!(word, spectrum, SPECTRA),
     },
     Entry {
+        name: "swell_height",
+        unit: "m",
+        default: "0",
+        allowed: "0 to 30 m",
+        help: "significant height of a swell beside the wind's waves, at most a 20th of its waves' length; 0 is none",
+        surfaces: &[Surface::Instance],
+        kind: Kind::Number,
+        access: field!(number, swell_height, |h| (0.0..=30.0).contains(&h)),
+    },
+    Entry {
+        name: "swell_period",
+        unit: "s",
+        default: "12",
+        allowed: "2 to 30 s",
+        help: "period of the swell's peak",
+        surfaces: &[Surface::Instance],
+        kind: Kind::Number,
+        access: field!(number, swell_period, |s| (2.0..=30.0).contains(&s)),
+    },
+    Entry {
+        name: "swell_direction",
+        unit: "degrees",
+        default: "",
+        allowed: "any finite angle, degrees",
+        help: "azimuth the swell comes from, as `wind_direction`; else the wind's",
+        surfaces: &[Surface::Instance],
+        kind: Kind::Number,
+        access: field!(optional, swell_direction, f64::is_finite),
+    },
+    Entry {
         name: "slopes",
         unit: "",
         default: "cox_munk",
@@ -444,6 +474,17 @@ pub const ENTRIES: [Entry; 33] = [
         surfaces: &DRAWN,
         kind: Kind::Word,
         access: field!(word, whitecap_onset, WHITECAP_ONSETS),
+    },
+    Entry {
+        name: "whitecap_lifetime",
+        unit: "s",
+        default: "0",
+        allowed: "0 to 60 s",
+        help: "for how long the foam of a whitecap stays where a drawn wave broke: the time in which it falls to 1/e, 3.85 s in salt \
+               water and 2.54 s in fresh; 0 is as long as the wave breaks, as in the report",
+        surfaces: &[Surface::Instance],
+        kind: Kind::Number,
+        access: field!(number, whitecap_lifetime, |s| (0.0..=60.0).contains(&s)),
     },
     Entry {
         name: "shadowing",
@@ -776,6 +817,10 @@ mod tests {
             ("readings", Value::Text("56, 71-73".into())),
             ("whitecaps", Value::Flag(false)),
             ("whitecap_onset", Value::Text("step".into())),
+            ("whitecap_lifetime", Value::Number(2.54)),
+            ("swell_height", Value::Number(1.5)),
+            ("swell_period", Value::Number(8.0)),
+            ("swell_direction", Value::Number(-20.0)),
             ("shadowing", Value::Flag(false)),
             ("hiding", Value::Text("once".into())),
             ("gram_charlier", Value::Flag(false)),
@@ -830,6 +875,9 @@ mod tests {
                 depth: 1e23,
                 fetch: 5e15,
                 spectrum: SpectrumModel::Elfouhaily,
+                swell_height: 0.7,
+                swell_period: 9.5,
+                swell_direction: Some(100.0 / 3.0),
                 slopes: SlopeStatistics::BreonHenriot,
                 slope_budget: SlopeBudget::Closed,
                 wavelength: 1.064,
@@ -843,6 +891,7 @@ mod tests {
                 readings: Readings::EQ_66 | Readings::EQ_22,
                 whitecaps: false,
                 whitecap_onset: WhitecapOnset::Ramp,
+                whitecap_lifetime: 3.85,
                 shadowing: false,
                 hiding: Hiding::Once,
                 gram_charlier: false,
@@ -914,6 +963,9 @@ mod tests {
             {
                 builder.set(name, &Value::Number(x)).unwrap();
             }
+            if surface == Surface::Instance {
+                builder.set("swell_height", &Value::Number(0.1)).unwrap();
+            }
             builder.set(name, &value).unwrap();
             let water = builder.parameters().unwrap().configure().unwrap();
             let [i, o, steep] = [[0.6, 0.0, 0.8], [-0.36, 0.48, 0.8], [-0.8, 0.0, 0.6]];
@@ -931,7 +983,10 @@ mod tests {
         let others = ["wind_speed", "wind_height", "friction_velocity", "beaufort", "surface", "instances"];
         for surface in [Surface::Flat, Surface::Instance, Surface::Ensemble] {
             let usual = f(surface, ("seed", Value::Number(0.0)));
-            for entry in ENTRIES.iter().filter(|entry| !others.contains(&entry.name)) {
+            // What drawn seas alone have is refused there.
+            let refused =
+                if surface == Surface::Ensemble { &["whitecap_lifetime", "swell_height"][..] } else { &[] };
+            for entry in ENTRIES.iter().filter(|e| !others.contains(&e.name) && !refused.contains(&e.name)) {
                 let value = match (entry.name, entry.kind) {
                     ("wind_direction", _) => Value::Number(60.0),
                     ("fetch", _) => Value::Number(3e4),
@@ -992,6 +1047,12 @@ mod tests {
             ("extinction", number(10.1)),
             ("ior", number(f64::INFINITY)),
             ("temperature", number(-0.5)),
+            ("whitecap_lifetime", number(-0.1)),
+            ("swell_height", number(-0.1)),
+            ("swell_height", number(31.0)),
+            ("swell_period", number(1.9)),
+            ("swell_direction", number(f64::INFINITY)),
+            ("whitecap_lifetime", number(61.0)),
             ("salinity", number(45.5)),
             ("whitecaps", number(1.0)),
             ("fresnel", Value::Flag(true)),

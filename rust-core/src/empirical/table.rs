@@ -591,8 +591,10 @@ mod tests {
     fn every_parameter_is_compared_or_known_to_differ() {
         const AXES: [&str; 3] = ["wind_direction", "footprint", "footprint_measure"];
         const WITHOUT_EFFECT: [&str; 4] = ["surface", "average", "across", "time"];
+        // Refused with surface = empirical.
+        const DRAWN: [&str; 4] = ["whitecap_lifetime", "swell_height", "swell_period", "swell_direction"];
         for entry in vocabulary::ENTRIES {
-            let lists = [&SHARED[..], &MADE_WITH, &vocabulary::WIND, &AXES, &WITHOUT_EFFECT];
+            let lists = [&SHARED[..], &MADE_WITH, &vocabulary::WIND, &AXES, &WITHOUT_EFFECT, &DRAWN];
             let count = lists.iter().filter(|list| list.contains(&entry.name)).count();
             assert_eq!(count, 1, "{}", entry.name);
         }

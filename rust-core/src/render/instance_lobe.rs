@@ -7,6 +7,7 @@ use crate::config::Water;
 use crate::error::Error;
 use crate::numeric::real::Extended;
 use crate::numeric::{Real, Vec3};
+use crate::sea::foam::Foam;
 use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
 use crate::surface::{Component, Surface, Waves};
@@ -20,6 +21,7 @@ pub struct InstanceLobe {
     surface: Surface,
     onset: Option<Onset<f64>>,
     onsets: Option<OnsetTable<f64>>,
+    foam: Option<Foam>,
 }
 
 /// The sea at a place.
@@ -27,7 +29,7 @@ pub struct InstanceLobe {
 pub struct LocalSea {
     /// The wave normal.
     pub normal: [f64; 3],
-    /// Probability of a whitecap (Eqs. 53-54).
+    /// Probability of a whitecap (Eqs. 53-54), with a lifetime its mean over the past.
     pub whitecap: f64,
 }
 
@@ -63,7 +65,8 @@ impl InstanceLobe {
         // None can stand where all crests together are not steep enough.
         let steepest: f64 = components.iter().map(|c| c.amplitude * c.frequency * c.frequency).sum();
         let onset = onset.filter(|onset| onset.probability(-steepest) > 0.0);
-        Ok(Self { water, components, surface, onset, onsets })
+        let foam = waves.foam(water.parameters.whitecap_lifetime);
+        Ok(Self { water, components, surface, onset, onsets, foam })
     }
 
     /// The waves that make the sea.
@@ -97,7 +100,15 @@ impl InstanceLobe {
             (Some(onsets), Some(footprint)) => Some(onsets.at(footprint.log2())),
             _ => self.onset,
         };
-        let whitecap = onset.map_or(0.0, |onset| onset.probability(point.acceleration));
+        let whitecap = onset.map_or(0.0, |onset| match self.foam {
+            None => onset.probability(point.acceleration),
+            Some(foam) => foam.mean(self.surface.time(), |before| {
+                onset.probability(match footprint {
+                    None => self.surface.acceleration_before(before, place),
+                    Some(footprint) => self.surface.acceleration_before_within(before, place, footprint),
+                })
+            }),
+        });
         LocalSea { normal: point.normal(), whitecap }
     }
 

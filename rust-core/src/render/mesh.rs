@@ -6,6 +6,7 @@ use super::grid::{CELLS, Grid, Layout, Ring, needed, split};
 use crate::config::{Surface, Water};
 use crate::error::Error;
 use crate::numeric::root::bisect;
+use crate::sea::foam::Foam;
 use crate::sea::whitecap::Onset;
 use crate::statistics::Ensemble;
 use crate::statistics::breaking::accelerations;
@@ -32,7 +33,7 @@ pub struct Mesh {
     pub water: Water,
     /// Where the vertices are.
     pub grid: Grid,
-    /// In order of rising wave numbers.
+    /// In order of rising wave numbers, those of a swell after the wind's.
     pub components: Vec<Component>,
     /// Of whitecaps, on every ring; empty where there are none.
     onsets: Vec<Onset<f64>>,
@@ -102,14 +103,17 @@ impl Mesh {
     }
 
     /// D of the facets where the waves have a footprint in m: so much larger that the facets' slope variance makes up for
-    /// what interpolation between vertices takes from the waves'.
+    /// what interpolation between vertices takes from the waves', and for the swell that is too short for the footprint.
     pub fn facets(&self, footprint: f64) -> f64 {
         let cell = footprint / CELLS;
-        let lost: f64 = self
-            .components
-            .iter()
-            .map(|c| c.seen_at(footprint).slope_variance() * (1.0 - interpolated(c.wave_number * cell)))
-            .sum();
+        // Of a swell, whose waves are nobody's facets, also what the footprint does not resolve.
+        let of_wind = self.water.fading_waves().of_wind();
+        let lost = |(j, c): (usize, &Component)| {
+            let seen = c.seen_at(footprint).slope_variance();
+            let unseen = if j < of_wind { 0.0 } else { c.slope_variance() - seen };
+            seen * (1.0 - interpolated(c.wave_number * cell)) + unseen
+        };
+        let lost: f64 = self.components.iter().enumerate().map(lost).sum();
         let total = |d: f64| self.water.facet_variances(d).iter().sum::<f64>();
         let wanted = total(footprint) + lost;
         // No facets are rougher than those of a thousand times the footprint, for what interpolation takes.
@@ -153,21 +157,36 @@ impl Mesh {
         normals: &mut [f32],
         whitecaps: &mut [f32],
     ) {
+        let waves = self.seen(ring);
         let places: Vec<_> = self.grid.places(ring).collect();
         let precise: Vec<_> = places.iter().map(|place| place.map(f64::from)).collect();
         let mut points = vec![Point::default(); places.len()];
-        let surface = RealisedSurface::new(self.seen(ring).into_iter(), time);
+        let mut surface = RealisedSurface::new(waves.iter().copied(), time);
         WaveSums::new(&surface).points(&precise, &mut points);
 
         let corners = positions.chunks_exact_mut(3).zip(normals.chunks_exact_mut(3));
-        for (([x, y], point), (position, normal)) in places.into_iter().zip(&points).zip(corners) {
+        for (([x, y], point), (position, normal)) in places.iter().copied().zip(&points).zip(corners) {
             position.copy_from_slice(&[x, y, point.height as f32]);
             normal.copy_from_slice(&point.normal().map(|x| x as f32));
         }
-        if let Some(onset) = onset {
+        let Some(onset) = onset else { return };
+        let highest = waves.iter().map(|c| c.frequency).fold(0.0, f64::max);
+        let Some(foam) = Foam::new(self.water.parameters.whitecap_lifetime, highest) else {
             for (whitecap, point) in whitecaps.iter_mut().zip(&points) {
                 *whitecap = onset.probability(point.acceleration) as f32;
             }
+            return;
+        };
+        let mut means = vec![0.0; places.len()];
+        for [before, weight] in foam.past(time) {
+            surface.set_time(time - before);
+            WaveSums::new(&surface).points(&precise, &mut points);
+            for (mean, point) in means.iter_mut().zip(&points) {
+                *mean += weight * onset.probability(point.acceleration);
+            }
+        }
+        for (whitecap, mean) in whitecaps.iter_mut().zip(means) {
+            *whitecap = mean as f32;
         }
     }
 }

@@ -42,3 +42,14 @@ impl Dispersion {
         bisect(0.0, rate / GRAVITY, |k| (GRAVITY + self.tension * k * k) * k >= rate)
     }
 }
+
+/// The wave number of gravity waves of a squared frequency over g, both in rad/cm, in water of a depth in cm, or in rad/m and m: the root of `k tanh(k d) =
+/// square`.
+pub(super) fn wave_number(square: f64, depth: f64) -> f64 {
+    if !square.is_finite() || depth.is_infinite() {
+        return square;
+    }
+    // tanh x is at least x/(1 + x).
+    let high = 0.5 * square + (0.25 * square * square + square / depth).sqrt();
+    bisect(0.0, high * (1.0 + 1e-9), |k| k * (k * depth).tanh() >= square)
+}

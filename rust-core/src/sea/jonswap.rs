@@ -2,9 +2,9 @@
 //! cgs.
 
 use super::bjerkaas_riedel::BjerkaasRiedel;
+use super::dispersion::wave_number;
 use super::whitecap::GRAVITY;
 use super::wind::WindProfile;
-use crate::numeric::root::bisect;
 
 /// Enhancement of the peak, and its width below and above.
 const GAMMA: f64 = 3.3;
@@ -86,17 +86,6 @@ impl Jonswap {
         }
         breaks
     }
-}
-
-/// The wave number of gravity waves of a squared frequency over g, both in rad/cm, in water of a depth in cm: the root of `k tanh(k d) =
-/// square`.
-fn wave_number(square: f64, depth: f64) -> f64 {
-    if !square.is_finite() || depth.is_infinite() {
-        return square;
-    }
-    // tanh x is at least x/(1 + x).
-    let high = 0.5 * square + (0.25 * square * square + square / depth).sqrt();
-    bisect(0.0, high * (1.0 + 1e-9), |k| k * (k * depth).tanh() >= square)
 }
 
 #[cfg(test)]

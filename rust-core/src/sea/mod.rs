@@ -3,12 +3,15 @@
 mod bjerkaas_riedel;
 mod dispersion;
 mod elfouhaily;
+pub mod foam;
 mod jonswap;
 mod salinity;
 pub mod spectrum;
+pub mod swell;
 pub mod whitecap;
 pub mod wind;
 
 pub use salinity::Salinity;
 pub use spectrum::{Spectrum, SpectrumModel};
+pub use swell::Swell;
 pub use wind::{Wind, WindProfile};

@@ -10,7 +10,7 @@ use super::characteristic::{Component, bessel};
 use crate::config::Water;
 use crate::numeric::root::bisect;
 use crate::sea::whitecap::{Onset, WhitecapOnset, deviation};
-use crate::surface::Component as Wave;
+use crate::surface::{Component as Wave, Waves};
 use std::f64::consts::PI;
 
 /// Fractions below this have no whitecaps.
@@ -54,6 +54,21 @@ pub(crate) fn accelerations(waves: &[Wave]) -> Acceleration<impl Fn(&[f64]) -> V
     }
 }
 
+/// Of a level sea.
+fn none() -> Acceleration<impl Fn(&[f64]) -> Vec<f64>> {
+    Acceleration {
+        variance: 0.0,
+        bound: 0.0,
+        characteristic: |frequencies: &[f64]| vec![1.0; frequencies.len()],
+    }
+}
+
+/// Amplitudes of the acceleration of a swell's waves, m/s^2, of what a footprint in m leaves of them.
+fn swell_accelerations(waves: &Waves, footprint: f64) -> Vec<f64> {
+    let amplitude = |c: Wave| c.amplitude * c.frequency.powi(2);
+    waves.swell_nodes().map(|c| amplitude(c.seen_at(footprint))).collect()
+}
+
 /// The acceleration of a sum of as many waves.
 pub(crate) fn sum_of_accelerations(
     component: &Component,
@@ -73,24 +88,23 @@ pub(crate) fn sum_of_accelerations(
 impl Water {
     /// The onset of whitecaps on drawn waves ([`Water::waves`]); `None` where there are none.
     pub fn whitecap_onset(&self) -> Option<Onset<f64>> {
-        self.onset_on(Component::new(&self.waves()).as_ref())
+        let waves = self.waves();
+        self.onset_on(Component::new(&waves).as_ref(), &swell_accelerations(&waves, 0.0))
     }
 
     /// The same on waves that fade ([`Water::fading_waves`]), where the footprint in m is this one.
     pub fn fading_whitecap_onset(&self, footprint: f64) -> Option<Onset<f64>> {
-        self.onset_on(Component::fading(&self.fading_waves(), footprint).as_ref())
+        let waves = self.fading_waves();
+        let component = Component::fading(&waves, footprint);
+        self.onset_on(component.as_ref(), &swell_accelerations(&waves, footprint))
     }
 
-    /// The same on the sum of as many waves as are drawn; of none the sea is level.
-    pub(crate) fn onset_on(&self, component: Option<&Component>) -> Option<Onset<f64>> {
+    /// The same on the sum of as many waves as are drawn and of a swell's with these amplitudes; of none the sea is level.
+    pub(crate) fn onset_on(&self, component: Option<&Component>, swell: &[f64]) -> Option<Onset<f64>> {
         let count = f64::from(self.parameters.components);
         match component.filter(|component| component.variances(count)[2] > 0.0) {
-            Some(component) => self.onset_of(&sum_of_accelerations(component, count)),
-            None => self.onset_of(&Acceleration {
-                variance: 0.0,
-                bound: 0.0,
-                characteristic: |frequencies: &[f64]| vec![1.0; frequencies.len()],
-            }),
+            Some(component) => self.onset_of(&sum_of_accelerations(component, count).beside(swell, count)),
+            None => self.onset_of(&none().beside(swell, count)),
         }
     }
 
@@ -109,6 +123,27 @@ impl Water {
 }
 
 impl<F: Fn(&[f64]) -> Vec<f64>> Acceleration<F> {
+    /// That of these waves and of so many of a swell, whose amplitudes in m/s^2 are one of these, all equally probable; none: no swell.
+    fn beside<'a>(
+        self,
+        swell: &'a [f64],
+        count: f64,
+    ) -> Acceleration<impl Fn(&[f64]) -> Vec<f64> + use<'a, F>> {
+        let nodes = swell.len().max(1) as f64;
+        let one = move |r: f64| swell.iter().map(|a| bessel(a * r)).sum::<f64>() / nodes;
+        Acceleration {
+            variance: self.variance + count * swell.iter().map(|a| 0.5 * a * a).sum::<f64>() / nodes,
+            bound: self.bound + count * swell.iter().copied().fold(0.0, f64::max),
+            characteristic: move |frequencies: &[f64]| {
+                let mut values = (self.characteristic)(frequencies);
+                if !swell.is_empty() {
+                    values.iter_mut().zip(frequencies).for_each(|(c, r)| *c *= one(*r).powi(count as i32));
+                }
+                values
+            },
+        }
+    }
+
     /// The onset whose mean is a fraction, at a friction velocity in cm/s.
     fn calibrated(&self, friction_velocity: f64, fraction: f64) -> Onset<f64> {
         let all = deviation(friction_velocity, fraction.min(MOST));

@@ -40,15 +40,29 @@ pub(crate) struct Component {
 
 /// Variances of a drawn sea: slope upwind, crosswind, acceleration in m^2/s^4.
 pub(crate) fn variances(waves: &Waves) -> [f64; 3] {
-    Component::new(waves).map_or([0.0; 3], |component| component.variances(waves.components as f64))
+    let count = waves.components as f64;
+    let wind = Component::new(waves).map_or([0.0; 3], |component| component.variances(count));
+    // The swell's as if it all came from one direction.
+    let nodes = waves.swell_nodes().count().max(1) as f64;
+    waves.swell_nodes().fold(wind, |[upwind, crosswind, acceleration], wave| {
+        let (sin, cos) = (wave.azimuth - waves.wind_azimuth).sin_cos();
+        let [slope, accelerations] =
+            [wave.slope_variance(), wave.acceleration_variance()].map(|v| count * v / nodes);
+        [upwind + slope * cos * cos, crosswind + slope * sin * sin, acceleration + accelerations]
+    })
 }
 
 /// No drawn sea is steeper.
 pub(crate) fn steepest(waves: &Waves) -> f64 {
-    Component::new(waves).map_or(0.0, |component| {
-        let [upwind, crosswind, _] = component.bounds(waves.components as f64);
+    let count = waves.components as f64;
+    let wind = Component::new(waves).map_or(0.0, |component| {
+        let [upwind, crosswind, _] = component.bounds(count);
         upwind.hypot(crosswind)
-    })
+    });
+    let swell = waves
+        .swell
+        .map_or(0.0, |swell| swell.amplitude(waves.components) * swell.wave_number(swell.frequency(1.0)));
+    wind + count * swell
 }
 
 impl Component {

@@ -156,7 +156,11 @@ impl Ensemble {
         let (laser, beam) = (engagement.laser().into(), engagement.direction().into());
         let place = worker.ray.first_hit(&worker.surface, laser, beam)?.truncate().to_array();
         let point = worker.surface.point(place);
-        Some(Hit { normal: self.normal(worker, place, &point), ..self.hit_of(&point, place, chance) })
+        let whitecap = self.whitecap(&worker.surface, place, &point);
+        Some(Hit {
+            normal: self.normal(worker, place, &point),
+            ..self.hit_of(&point, whitecap, place, chance)
+        })
     }
 
     /// The normal about which facets lie, where a beam meets a point of the surface at a place in m.
@@ -167,9 +171,19 @@ impl Ensemble {
         }
     }
 
-    /// The hit at a place whose surface is known.
-    pub(crate) fn hit_of(&self, point: &Point, place: [f64; 2], chance: f64) -> Hit {
-        let probability = self.onset.map_or(0.0, |onset| onset.probability(point.acceleration));
+    /// Probability of a whitecap over a place in m of a drawn surface, where it has this point: by the acceleration there and, with
+    /// a lifetime, by what it was.
+    pub fn whitecap(&self, surface: &Surface, place: [f64; 2], point: &Point) -> f64 {
+        let Some(onset) = self.onset else { return 0.0 };
+        match self.waves.foam(self.water.parameters.whitecap_lifetime) {
+            None => onset.probability(point.acceleration),
+            Some(foam) => foam
+                .mean(surface.time(), |before| onset.probability(surface.acceleration_before(before, place))),
+        }
+    }
+
+    /// The hit at a place whose surface is known, with the probability of a whitecap.
+    pub(crate) fn hit_of(&self, point: &Point, probability: f64, place: [f64; 2], chance: f64) -> Hit {
         Hit {
             position: [place[0], place[1], point.height],
             normal: point.normal(),

@@ -71,9 +71,11 @@ impl Exact {
     /// # Errors
     /// [`Error::Surface`] where the surface is flat: it has no waves. [`Error::OutOfRange`] for fewer components than 4, and
     /// for footprints whose facets are finer than the drawn slopes by orders of magnitude, and where Eq. 70 is taken as
-    /// printed: facets then do not move with the waves.
+    /// printed: facets then do not move with the waves. And for whitecaps with a lifetime: foam lies on other slopes than
+    /// those of the crest that made it. And for a swell.
     pub fn new(water: &Water) -> Result<Self, Error> {
         let water = &water.on(&DRAWN)?;
+        water.parameters.refuse_drawn_seas("in exact statistics")?;
         let waves = water.waves();
         let component = Component::new(&waves);
         Ok(Self {

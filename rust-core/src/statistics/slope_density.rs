@@ -284,7 +284,7 @@ fn fade(x: f64) -> f64 {
 
 /// The transform of W over the slope's frequencies; `None` where whitecaps are off or too rare to matter.
 fn caps(component: &Component, water: &Water, upwind: &[f64], crosswind: &[f64]) -> Option<Vec<f64>> {
-    let onset = water.onset_on(Some(component))?;
+    let onset = water.onset_on(Some(component), &[])?;
     let count = f64::from(water.parameters.components);
     let acceleration = sum_of_accelerations(component, count);
     if onset.probability(-acceleration.bound) <= 0.0 {

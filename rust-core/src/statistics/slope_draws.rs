@@ -216,7 +216,8 @@ impl Ensemble {
         }
         let place = laser + back * beam;
         let normal = self.normal(worker, [0.0; 2], &point);
-        *hit = Hit { normal, ..self.hit_of(&point, [place.x, place.y], chance) };
+        let whitecap = self.whitecap(&worker.surface, [0.0; 2], &point);
+        *hit = Hit { normal, ..self.hit_of(&point, whitecap, [place.x, place.y], chance) };
         // The sea's origin is the hit's place.
         let origin = place.truncate().extend(0.0);
         self.observe(

@@ -3,7 +3,7 @@
 //! **Streams.** Every instance has its own, so that it is the same whoever computes it and in whatever order: ChaCha8
 //! with the seed as the first eight bytes of its key (little endian, the rest 0), no nonce, and the instance's number as
 //! the stream. A uniform number is the upper 53 bits of the next 64, over 2^53. The first decides about the whitecap,
-//! then every component takes three: wave number, phase, azimuth. More components do not change the first ones.
+//! then every component takes three: wave number, phase, azimuth; after the wind's those of a swell. More components do not change the first ones.
 //!
 //! [`Draws::Sobol`] replaces the upper 23 bits of the first 256 numbers by Burley's hashed Sobol sequence, its 65536 points
 //! by a new scramble for every 65536 instances.

@@ -26,6 +26,8 @@ pub struct Surface {
     wave_number: Vec<[f64; LANES]>,
     /// No crest is higher (Eq. 42), m.
     highest: f64,
+    /// s.
+    time: f64,
 }
 
 /// The surface over a place.
@@ -101,6 +103,7 @@ impl Surface {
 
     /// Moves the waves to a time in s.
     pub fn set_time(&mut self, time: f64) {
+        self.time = time;
         self.phase.clear();
         self.phase.extend(
             self.psi
@@ -116,6 +119,11 @@ impl Surface {
             let (at, l) = (wave / LANES, wave % LANES);
             [&self.amplitude, &self.phase, &self.k_x, &self.k_y, &self.frequency].map(|array| array[at][l])
         })
+    }
+
+    /// The time of the waves, s.
+    pub fn time(&self) -> f64 {
+        self.time
     }
 
     /// No crest is higher and no trough deeper, m (Eq. 42).
@@ -159,12 +167,28 @@ impl Surface {
         self.total(place, |lanes| self.amplitude[lanes])
     }
 
+    /// Vertical acceleration (Eq. 52), m/s^2, over a place in m, so many seconds before the surface's time.
+    pub fn acceleration_before(&self, before: f64, place: [f64; 2]) -> f64 {
+        self.past_acceleration(before, place, |lanes| self.amplitude[lanes])
+    }
+
+    /// The same without the waves that are too short for a footprint in m ([`share`]).
+    pub fn acceleration_before_within(&self, before: f64, place: [f64; 2], footprint: f64) -> f64 {
+        self.past_acceleration(before, place, self.within(footprint))
+    }
+
     /// The same without the waves that are too short for a footprint in m ([`share`]).
     pub fn point_within(&self, place: [f64; 2], footprint: f64) -> Point {
-        self.total(place, |lanes| {
+        self.total(place, self.within(footprint))
+    }
+
+    /// Amplitudes, m, of what a footprint in m leaves of the waves, by lanes.
+    #[inline(always)]
+    fn within(&self, footprint: f64) -> impl Fn(usize) -> [f64; LANES] {
+        move |lanes| {
             let (a, k) = (&self.amplitude[lanes], &self.wave_number[lanes]);
             std::array::from_fn(|l| if a[l] > 0.0 { a[l] * share(k[l], footprint).sqrt() } else { 0.0 })
-        })
+        }
     }
 
     /// The mean of everything under a Gaussian weight about a place in m, which has these variances along x and y and this
@@ -190,6 +214,23 @@ impl Surface {
             point.acceleration -= sum(std::array::from_fn(|l| a[l] * omega[l] * omega[l] * cos[l]));
         }
         point
+    }
+
+    /// The acceleration of the waves with these amplitudes, m, by lanes.
+    #[inline(always)]
+    fn past_acceleration(
+        &self,
+        before: f64,
+        place: [f64; 2],
+        amplitudes: impl Fn(usize) -> [f64; LANES],
+    ) -> f64 {
+        let mut acceleration = 0.0;
+        for lanes in 0..self.amplitude.len() {
+            let (a, omega, phase) = (amplitudes(lanes), &self.frequency[lanes], self.phases(place, lanes));
+            let (_, cos) = sin_cos(std::array::from_fn(|l| phase[l] - omega[l] * before));
+            acceleration -= sum(std::array::from_fn(|l| a[l] * omega[l] * omega[l] * cos[l]));
+        }
+        acceleration
     }
 
     /// The waves as met along a line over a place in m: for every lane amplitude, phase at the start and wave number

@@ -1,4 +1,4 @@
-//! The waves that are drawn: which components a sea may have (Eqs. 21-27, 37-38).
+//! The waves that are drawn: which components a sea may have (Eqs. 21-27, 37-38), and after them those of a swell.
 //!
 //! [`Draws::Stratified`] takes the same random numbers as [`Draws::Random`]. Component j of M has its wave number at
 //! (j + u)/M of the range, and its azimuth at the fraction of j golden ratios plus the first component's number; the other components' third number is
@@ -8,11 +8,14 @@ use super::component::Component;
 use super::random::{Draws, InstanceRng};
 use super::realised::Surface;
 use crate::config::Water;
-use crate::sea::Spectrum;
+use crate::sea::foam::Foam;
+use crate::sea::{Spectrum, Swell};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Its multiples' fractions spread most evenly.
 const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
+/// Frequencies of a swell in means.
+const NODES: u32 = 128;
 
 /// What the components of a sea are drawn from.
 #[derive(Debug, Clone, Copy)]
@@ -25,17 +28,39 @@ pub struct Waves {
     pub components: usize,
     /// phi_W, radians.
     pub wind_azimuth: f64,
+    /// It has M components of its own, of equal energy.
+    pub swell: Option<Swell>,
 }
 
 impl Waves {
     /// Number of components an instance really has: 0 where there are no waves.
     pub fn len(&self) -> usize {
-        if self.log_range.is_some() { self.components } else { 0 }
+        self.of_wind() + self.of_swell()
     }
 
     /// Whether there are no waves.
     pub fn is_empty(&self) -> bool {
-        self.log_range.is_none()
+        self.len() == 0
+    }
+
+    /// Those that the wind raises, which come first.
+    pub fn of_wind(&self) -> usize {
+        if self.log_range.is_some() { self.components } else { 0 }
+    }
+
+    /// Those of the swell.
+    pub fn of_swell(&self) -> usize {
+        if self.swell.is_some() { self.components } else { 0 }
+    }
+
+    /// Foam on them with a lifetime in s; `None` where it does not last.
+    pub fn foam(&self, lifetime: f64) -> Option<Foam> {
+        if lifetime == 0.0 {
+            return None;
+        }
+        let wind = self.log_range.map_or(0.0, |[_, high]| self.spectrum.frequency(high.exp()));
+        let swell = self.swell.map_or(0.0, |swell| swell.frequency(1.0));
+        Foam::new(lifetime, wind.max(swell))
     }
 
     /// L, extent of the wave numbers (Eq. 25).
@@ -61,6 +86,25 @@ impl Waves {
         self.component(k, TAU * u[1], self.wind_azimuth + PI * (u[2] - 0.5))
     }
 
+    /// The swell's of three uniform numbers: the shares of its energy at lower frequencies and to the right, and the phase.
+    fn draw_swell(&self, swell: &Swell, u: [f64; 3]) -> Component {
+        let frequency = swell.frequency(u[0]);
+        Component {
+            wave_number: swell.wave_number(frequency),
+            phase: TAU * u[1],
+            azimuth: swell.direction(u[2]),
+            amplitude: swell.amplitude(self.components),
+            frequency,
+        }
+    }
+
+    /// Components of the swell whose mean is that of its draws over frequencies; none without one.
+    pub(crate) fn swell_nodes(&self) -> impl Iterator<Item = Component> {
+        let node = move |n: u32| (f64::from(n) + 0.5) / f64::from(NODES);
+        let nodes = self.swell.map_or(0, |_| NODES);
+        (0..nodes).filter_map(move |n| Some(self.draw_swell(self.swell.as_ref()?, [node(n), 0.0, 0.5])))
+    }
+
     /// The components that these numbers draw.
     pub fn components(&self, mut numbers: InstanceRng) -> impl Iterator<Item = Component> {
         let range = self.log_range.unwrap_or_default();
@@ -69,10 +113,13 @@ impl Waves {
             let mut u: [f64; 3] = std::array::from_fn(|_| numbers.next());
             if numbers.draws == Draws::Stratified {
                 let shift = *shift.get_or_insert(u[2]);
-                u[0] = (j as f64 + u[0]) / self.len() as f64;
+                u[0] = ((j % self.components) as f64 + u[0]) / self.components as f64;
                 u[2] = (shift + j as f64 * GOLDEN_RATIO).fract();
             }
-            self.draw(range, u)
+            match &self.swell {
+                Some(swell) if j >= self.of_wind() => self.draw_swell(swell, u),
+                _ => self.draw(range, u),
+            }
         })
     }
 
@@ -100,6 +147,7 @@ impl Water {
             log_range: self.slopes.range(footprint).map(|[low, high]| [low.ln(), high.ln()]),
             components: p.components as usize,
             wind_azimuth: p.wind_direction.to_radians(),
+            swell: p.swell(),
         }
     }
 }
