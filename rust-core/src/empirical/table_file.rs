@@ -155,17 +155,16 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
     if told("format_version") != FORMAT_VERSION {
         return Err(format!("its format_version is {}, expected {FORMAT_VERSION}", told("format_version")));
     }
-    let mut parameters = told("parameters");
-    // Files that do not tell are of Eqs. 53-54 alone.
-    if let Some(told) = parameters.as_object_mut() {
-        told.entry("whitecap_onset").or_insert(json!("ramp"));
-    }
+    let parameters = told("parameters");
     let untold = |name: &&&str| !ADDED.contains(name) && parameters.get(name).is_none();
     if let Some(missing) = SHARED.iter().find(untold) {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {
-        Some(match parameters.get(name)? {
+        // Files that do not tell are of Eqs. 53-54 alone.
+        let ramp = || (name == "whitecap_onset").then(|| Value::Text("ramp".into()));
+        let Some(told) = parameters.get(name) else { return ramp() };
+        Some(match told {
             serde_json::Value::Bool(x) => Value::Flag(*x),
             serde_json::Value::Number(x) => Value::Number(x.as_f64()?),
             serde_json::Value::String(x) => Value::Text(x.clone()),
