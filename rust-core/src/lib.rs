@@ -64,5 +64,7 @@ pub use render::{
     EnsembleLobe, FacetTable, InstanceLobe, Layout, Mesh, OnsetTable, ensemble_lobe, grid, mesh,
 };
 pub use sea::{Salinity, SpectrumModel, Swell, Wind, WindProfile, foam, spectrum, whitecap, wind};
-pub use statistics::{Aim, Engagement, Ensemble, Exact, Proposal, Statistics, WhitecapMode, ensemble};
+pub use statistics::{
+    Aim, Beam, Engagement, Ensemble, Exact, Proposal, Spot, SpotShape, Statistics, WhitecapMode, ensemble,
+};
 pub use surface::{Draws, Surface as RealisedSurface, WaveSums};

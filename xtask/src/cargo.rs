@@ -10,7 +10,8 @@ use std::process::Stdio;
 
 /// Everything that users get and all tests of it, with optimisation. Cargo unifies the features of dependencies over what one call
 /// selects: each other selection would compile the library once more.
-pub const EVERYTHING: [&str; 5] = ["--release", "--workspace", "--exclude", "xtask", "--all-targets"];
+pub const EVERYTHING: [&str; 8] =
+    ["--release", "--workspace", "--exclude", "xtask", "--lib", "--bins", "--tests", "--examples"];
 
 /// The output of one package.
 pub struct Built {

@@ -3,6 +3,7 @@
 
 use crate::{build, c_api, setup, util};
 use anyhow::Result;
+use std::path::PathBuf;
 
 /// All of it.
 pub fn sanitize() -> Result<()> {
@@ -19,7 +20,7 @@ pub fn valgrind() -> Result<bool> {
         );
         return Ok(false);
     }
-    for program in c_api::programs("c-test", &[])? {
+    let check = |program: PathBuf| -> Result<()> {
         let name = util::shown(&program).to_string();
         util::run(
             util::command("valgrind")
@@ -34,7 +35,13 @@ pub fn valgrind() -> Result<bool> {
             &format!("{name} under valgrind"),
         )?;
         println!("sanitize: {name} under valgrind: no error, no leak");
-    }
+        Ok(())
+    };
+    let programs = c_api::programs("c-test", &[])?;
+    std::thread::scope(|scope| {
+        let checks: Vec<_> = programs.into_iter().map(|program| scope.spawn(|| check(program))).collect();
+        checks.into_iter().try_for_each(|check| check.join().expect("does not panic"))
+    })?;
     Ok(true)
 }
 

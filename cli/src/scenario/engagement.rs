@@ -1,9 +1,10 @@
 //! `[[engagement]]` of a scenario file: one time, or a trajectory.
 
 use crate::toml_file::Item;
-use prob_water::{Aim, Engagement, Error};
+use prob_water::{Aim, Beam, Engagement, Error};
 
-const KEYS: [&str; 6] = ["time", "times", "laser", "target", "direction", "observers"];
+const KEYS: [&str; 8] =
+    ["time", "times", "laser", "target", "direction", "observers", "divergence", "aperture"];
 
 /// The engagements of one entry, one for every time, s; `now` is the time where none is given.
 pub fn read(entry: &Item, now: f64) -> Result<Vec<Engagement>, String> {
@@ -36,10 +37,19 @@ pub fn read(entry: &Item, now: f64) -> Result<Vec<Engagement>, String> {
     };
     let observers = need("observers")?.list("a list of positions")?;
     let observers = observers.iter().map(|o| track(o, count)).collect::<Result<Vec<_>, _>>()?;
+    let beam = match (find("divergence"), find("aperture")) {
+        (None, Some(aperture)) => return Err(aperture.refuse("aperture has no meaning without divergence")),
+        (None, None) => None,
+        (Some(divergence), aperture) => Some((divergence.number()?, aperture.map_or(Ok(0.0), Item::number)?)),
+    };
 
     let at = |(i, time): (usize, &f64)| {
         let observers: Vec<_> = observers.iter().map(|track| track[i]).collect();
-        Engagement::new(*time, laser[i], aim(way[i]), &observers)
+        let engagement = Engagement::new(*time, laser[i], aim(way[i]), &observers)?;
+        Ok(match beam {
+            Some((divergence, aperture)) => engagement.with_beam(Beam::new(divergence, aperture)?),
+            None => engagement,
+        })
     };
     // The library refuses by name: the line is that of the key.
     let refuse = |error: Error| {

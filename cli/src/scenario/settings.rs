@@ -1,11 +1,12 @@
 //! The keys that are a scenario's own: what is asked about the sea.
 
 use crate::toml_file::Item;
-use prob_water::{Draws, Proposal, Surface, WhitecapMode};
+use prob_water::{Draws, Proposal, SpotShape, Surface, WhitecapMode};
 use std::path::{Path, PathBuf};
 
 /// Their names.
-pub const KEYS: [&str; 5] = ["limits", "statistics", "draws", "whitecap_presence", TABLE];
+pub const KEYS: [&str; 7] =
+    ["limits", "statistics", "draws", "whitecap_presence", "spot", "spot_normal", TABLE];
 /// The one that names a table of the empirical model.
 pub const TABLE: &str = "table";
 
@@ -39,6 +40,10 @@ pub struct Settings {
     pub proposal: Proposal,
     /// How whitecaps take part.
     pub presence: WhitecapMode,
+    /// What a beam lights.
+    pub spot: SpotShape,
+    /// Whether normals are means over it.
+    pub mean_normal: bool,
 }
 
 impl Settings {
@@ -66,6 +71,11 @@ impl Settings {
                         ("slopes", (Draws::Random, Proposal::Slopes)),
                     ])?;
                 }
+                "spot" => {
+                    settings.spot =
+                        item.choice(&[("circle", SpotShape::Circle), ("ellipse", SpotShape::Ellipse)])?;
+                }
+                "spot_normal" => settings.mean_normal = item.choice(&[("hit", false), ("mean", true)])?,
                 TABLE => (), // Model's
                 _ => {
                     settings.presence =
@@ -73,15 +83,17 @@ impl Settings {
                 }
             }
         }
+        let exact = settings.source == Source::Exact;
         let meaningless = |item: &&Item| match item.name {
-            "draws" => settings.proposal != Proposal::Auto,
-            "whitecap_presence" => settings.presence != WhitecapMode::Drawn,
+            "draws" => exact && settings.proposal != Proposal::Auto,
+            "whitecap_presence" => exact && settings.presence != WhitecapMode::Drawn,
+            "spot_normal" => settings.source != Source::Draws && settings.mean_normal,
             _ => false,
         };
-        match items.iter().find(meaningless).filter(|_| settings.source == Source::Exact) {
+        match items.iter().find(meaningless) {
             Some(item) => {
-                let with = item.text()?;
-                Err(item.refuse(format!("{} = {with} has no meaning with statistics = exact", item.name)))
+                let (value, source) = (item.text()?, if exact { "exact" } else { "auto" });
+                Err(item.refuse(format!("{} = {value} has no meaning with statistics = {source}", item.name)))
             }
             None => Ok(settings),
         }
@@ -97,7 +109,7 @@ pub fn table(item: &Item, file: &Path) -> Result<PathBuf, String> {
 pub fn check(items: &[Item], surface: Surface) -> Result<(), String> {
     let empirical = surface == Surface::Empirical;
     let meaningless = |item: &&Item| match item.name {
-        "limits" => false,
+        "limits" | "spot" => false,
         TABLE => !empirical,
         _ => empirical,
     };

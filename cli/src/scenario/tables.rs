@@ -1,6 +1,7 @@
 //! What a scenario writes: statistics and, where asked for, instances.
 
-use super::file::{Method, Scenario};
+use super::file::Scenario;
+use super::part::Method;
 use crate::table::{self, Cell, Table};
 use crate::{Outcome, Stop, files};
 use clap::ArgMatches;
@@ -41,6 +42,8 @@ pub struct Tables {
     instances: Option<Table>,
     readings: String,
     seed: u64,
+    /// D of the rows that come, m, where rows tell it.
+    footprint: Option<f64>,
     rows: u64,
     few: Notice,
     wrong: Notice,
@@ -103,7 +106,7 @@ impl Tables {
     /// Both, so that neither is found impossible after the work is done.
     pub fn open(matches: &ArgMatches, scenario: &Scenario) -> Result<Self, Stop> {
         let instances_out = matches.contains_id("instances_out");
-        let without_instances = match scenario.method {
+        let without_instances = match scenario.parts[0].method {
             Method::Draws(_) => None,
             Method::Auto(..) => Some("statistics = auto"),
             Method::Exact(_) => Some("statistics = exact"),
@@ -123,7 +126,8 @@ impl Tables {
         };
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let limits = scenario.limits.iter().map(|limit| format!("p_over_{limit}"));
-        let outside = matches!(scenario.method, Method::Table(..)).then(|| "outside".to_owned());
+        let outside = matches!(scenario.parts[0].method, Method::Table(..)).then(|| "outside".to_owned());
+        let footprint = scenario.own_footprints.then(|| "footprint".to_owned());
         let upper = scenario.limits.iter().map(|limit| format!("p_over_{limit}_upper"));
         let parameters = &scenario.water.parameters;
         Ok(Self {
@@ -135,16 +139,23 @@ impl Tables {
                     .chain(outside)
                     .chain(upper)
                     .chain(names(&TRUST))
+                    .chain(footprint)
                     .collect(),
             )?),
             instances: instances_out.then(|| open(other, names(&INSTANCES))).transpose()?,
             readings: parameters.get("readings").map(|value| value.to_string()).unwrap_or_default(),
             seed: parameters.seed,
+            footprint: scenario.own_footprints.then_some(scenario.water.footprint),
             rows: 0,
             few: Notice::default(),
             wrong: Notice::default(),
             outside: Notice::default(),
         })
+    }
+
+    /// D of the rows that come, m.
+    pub fn footprint(&mut self, footprint: f64) {
+        self.footprint = self.footprint.map(|_| footprint);
     }
 
     /// The rows of some engagements.
@@ -197,6 +208,7 @@ impl Tables {
         row.extend([s.effective, s.mean_upper].map(Cell::Number));
         row.push(Cell::Text(by.name()));
         row.extend([s.mean_error, s.share_error].map(Cell::Number));
+        row.extend(self.footprint.map(Cell::Number));
         row.extend(origin(&self.readings, self.seed));
         match table.row(&row) {
             Err(Stop::ReaderLeft) if self.instances.is_some() => self.statistics = None,

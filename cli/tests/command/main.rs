@@ -1,6 +1,7 @@
 //! The command as users run it: the real binary, its streams and its exit status.
 
 mod any_bytes;
+mod beam;
 mod brdf;
 mod empirical;
 mod files;

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// A folder with one scenario file.
-struct Scenario(TempDir);
+pub struct Scenario(TempDir);
 
 impl Scenario {
-    fn new(text: &str) -> Self {
+    pub fn new(text: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("sea.toml"), text).unwrap();
         Self(folder)
@@ -20,12 +20,12 @@ impl Scenario {
 
     /// The statistics.
     #[track_caller]
-    fn run(&self, flags: &str) -> String {
+    pub fn run(&self, flags: &str) -> String {
         succeed(&format!("scenario {} {flags}", self.path("sea.toml").display()), "")
     }
 
     /// Both streams of a run.
-    fn output(&self, flags: &str) -> std::process::Output {
+    pub fn output(&self, flags: &str) -> std::process::Output {
         let output = crate::run(&format!("scenario {} {flags}", self.path("sea.toml").display()), "");
         assert!(output.status.success());
         output
@@ -33,7 +33,7 @@ impl Scenario {
 
     /// The statistics and the table of instances.
     #[track_caller]
-    fn run_with_instances(&self, flags: &str) -> [String; 2] {
+    pub fn run_with_instances(&self, flags: &str) -> [String; 2] {
         let path = self.path("instances.csv");
         let statistics = self.run(&format!("{flags} --instances-out {}", path.display()));
         [statistics, fs::read_to_string(path).unwrap()]

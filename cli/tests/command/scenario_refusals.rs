@@ -49,6 +49,17 @@ fn refused(text: &[u8], flags: &str, place: &str, named: &str) {
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
 }
 
+/// The same without a table of instances.
+#[track_caller]
+fn refused_alone(text: &[u8], flags: &str, place: &str, named: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sea.toml");
+    fs::write(&file, text).unwrap();
+    let message = refuse(&format!("scenario {} {flags}", file.display()), "");
+    assert!(message.starts_with(&format!("prob-water: {}:{place}: ", file.display())), "{place}: {message}");
+    assert!(message.contains(named), "{message} does not name {named}");
+}
+
 /// A good file in which one text is replaced by another: the line, and what the message names.
 #[track_caller]
 fn replaced(good: &str, cases: &[(&str, &str, &str, &str)]) {
@@ -102,6 +113,39 @@ fn engagements() {
     refused(second.as_bytes(), "", "18", "laser = [0, 0, -9]");
     let second = format!("{GOOD}[[engagement]]\ntarget = [0, 0, 0]\n");
     refused(second.as_bytes(), "", "17", "laser is missing");
+}
+
+#[test]
+fn beams() {
+    replaced(
+        GOOD,
+        &[
+            (
+                "time = 0",
+                "divergence = -1",
+                "10",
+                "divergence = -1 is out of range: allowed is 0 to 500 mrad",
+            ),
+            ("time = 0", "divergence = 'wide'", "10", "divergence = 'wide' is not a number"),
+            ("time = 0", "divergence = 0", "10", "allowed is above 0 mrad where the aperture is 0"),
+            (
+                "time = 0",
+                "divergence = 1\naperture = nan",
+                "11",
+                "aperture = NaN is out of range: allowed is 0 to 100 m",
+            ),
+            ("time = 0", "aperture = 0.1", "10", "aperture has no meaning without divergence"),
+        ],
+    );
+    let beam = GOOD.replace("time = 0", "divergence = 2");
+    let both = beam.replace("components = 5", "footprint = 0.2");
+    let excluded = "footprint = 0.2 and divergence = 2 are both given: allowed is one of footprint, divergence (with aperture)";
+    refused(both.as_bytes(), "", "7", excluded);
+    // A flag is not the file's fault.
+    refused(beam.as_bytes(), "--footprint 0.2", "", excluded);
+    // What follows from a beam is the engagement's.
+    let wide = beam.replace("divergence = 2", "divergence = 400");
+    refused_alone(wide.as_bytes(), "--surface empirical", "9", "footprint = ");
 }
 
 #[test]
@@ -205,6 +249,31 @@ fn settings() {
                 "whitecap_presence = 'expected'\nstatistics = 'exact'",
                 "2",
                 "whitecap_presence = expected has no meaning with statistics = exact",
+            ),
+            (
+                "limits = [0.1, 1]",
+                "spot = 'square'",
+                "2",
+                "spot = square is unknown: allowed is circle, ellipse",
+            ),
+            ("limits = [0.1, 1]", "spot_normal = 'all'", "2", "allowed is hit, mean"),
+            (
+                "limits = [0.1, 1]",
+                "statistics = 'exact'\nspot_normal = 'mean'",
+                "3",
+                "spot_normal = mean has no meaning with statistics = exact",
+            ),
+            (
+                "limits = [0.1, 1]",
+                "spot_normal = 'mean'\nstatistics = 'auto'",
+                "2",
+                "spot_normal = mean has no meaning with statistics = auto",
+            ),
+            (
+                "limits = [0.1, 1]\n\n[model]",
+                "spot_normal = 'mean'\n\n[model]\nfootprint = inf",
+                "5",
+                "footprint = inf is out of range: allowed is finite, for a mean over the spot",
             ),
             ("time = 0", "limits = [1]", "10", "unknown key limits"),
         ],

@@ -188,7 +188,7 @@ pub(crate) struct Geometry<T: Real, E> {
     /// Tangential parts of the two directions.
     tangential: [[T; 2]; 2],
     /// Finite; NaN in, NaN out.
-    sum: T,
+    nan_probe: T,
 }
 
 impl<T: Real, E> Geometry<T, E> {
@@ -197,8 +197,8 @@ impl<T: Real, E> Geometry<T, E> {
     #[inline(always)]
     pub fn above_horizon(&self, f: T) -> T {
         let zero = T::of(0.0);
-        let lit = T::lt(zero, self.cos[0]) & T::lt(zero, self.cos[1]);
-        zero.mul_add(self.sum, T::select(lit, f, zero))
+        let upper = T::lt(zero, self.cos[0]) & T::lt(zero, self.cos[1]);
+        zero.mul_add(self.nan_probe, T::select(upper, f, zero))
     }
 }
 
@@ -238,7 +238,7 @@ impl<T: Real> Facets<T> {
                 slope: [T::from_density(hu.to_density() * inv_z), T::from_density(hc.to_density() * inv_z)],
                 local_i: self.wind.vector_to_wind(i),
                 tangential: [[i[0], i[1]], [o[0], o[1]]],
-                sum: T::from_density(length2),
+                nan_probe: T::from_density(length2),
             };
         };
         // alpha_u(H) - alpha_u(N) as one angle: its sine is a component of N x H, free of cancellation.
@@ -272,7 +272,7 @@ impl<T: Real> Facets<T> {
             slope,
             local_i,
             tangential: [tangential_part(i, n), tangential_part(o, n)],
-            sum: T::from_density(length2) + dot(i, n),
+            nan_probe: T::from_density(length2) + dot(i, n),
         }
     }
 
@@ -295,12 +295,12 @@ impl<T: Real> Facets<T> {
     pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, n: impl Into<Option<Vec3<T>>>) -> T {
         let n = n.into();
         let g = self.geometry::<T::Extended>(i, o, n);
-        g.above_horizon(self.lit(&g, n.is_none()))
+        g.above_horizon(self.eval_above(&g, n.is_none()))
     }
 
     /// The same for directions above the horizon: `D rho G/(4 cos theta_i cos theta_r)` with `D = p/cos^4 xi`.
     #[inline(always)]
-    pub(crate) fn lit<E: Extended<T>>(&self, g: &Geometry<T, E>, level: bool) -> T {
+    pub(crate) fn eval_above<E: Extended<T>>(&self, g: &Geometry<T, E>, level: bool) -> T {
         let density = self.density(g, level);
         let rho = T::from_density(self.reflectance.eval(g.cos_zeta));
         let area = T::max(self.projected_area(g, rho), T::TINY);
@@ -349,9 +349,9 @@ impl<T: Real> Facets<T> {
         let g = self.geometry::<T::Plain>(i, o, n.into());
         let [ci, cr] = g.cos;
         let zero = T::of(0.0);
-        let lit = T::lt(zero, ci) & T::lt(zero, cr);
+        let upper = T::lt(zero, ci) & T::lt(zero, cr);
         let rho = T::from_density(self.reflectance.eval(g.cos_zeta));
-        T::select(lit, rho * ci * cr / T::max(self.projected_area(&g, rho), T::TINY), zero)
+        T::select(upper, rho * ci * cr / T::max(self.projected_area(&g, rho), T::TINY), zero)
     }
 
     /// `cos theta_i cos theta_r/G` (Eqs. 64-67).
@@ -360,7 +360,7 @@ impl<T: Real> Facets<T> {
         let cos = [T::max(g.cos[0], T::of(GRAZING)), T::max(g.cos[1], T::of(GRAZING))];
         let mut spreads = [T::of(0.0); 2];
         if self.needs_spreads() {
-            spreads = [self.spread_along(g.tangential[0]), self.spread_along(g.tangential[1])];
+            spreads = [self.alpha_along(g.tangential[0]), self.alpha_along(g.tangential[1])];
         }
         self.masked_area(rho, cos, spreads)
     }
@@ -368,7 +368,7 @@ impl<T: Real> Facets<T> {
     /// `cos theta_i cos theta_r/G`, held to `rho/bound` times the larger of `(1 + Lambda) cos_i cos_r` of the two directions,
     /// Lambda by the facets' own slopes: what is reflected never exceeds what facets of this roughness leave visible. Eq. 64
     /// forgets the roughness that Eqs. 76-77 leave a calm sea; there this bound keeps the albedo below 1. It needs `spreads`, the
-    /// [`Facets::spread_along`] of both, and so do [`Facets::own_shadows`].
+    /// [`Facets::alpha_along`] of both, and so do [`Facets::own_shadows`].
     #[inline(always)]
     pub(crate) fn masked_area(&self, rho: T, [ci, cr]: [T; 2], [spread_i, spread_o]: [T; 2]) -> T {
         let mut area = ci * cr;
@@ -401,7 +401,7 @@ impl<T: Real> Facets<T> {
         if self.readings.contains(Readings::EQ_66) { read + printed_excess(cos, sigma_sin) } else { read }
     }
 
-    /// Whether the [`Facets::spread_along`] of both directions take part.
+    /// Whether the [`Facets::alpha_along`] of both directions take part.
     #[inline(always)]
     pub(crate) fn needs_spreads(&self) -> bool {
         self.bounded || self.own_shadows
@@ -415,16 +415,16 @@ impl<T: Real> Facets<T> {
 
     /// sqrt 2 times the facets' standard deviation along a direction (Beckmann's alpha), times its sine.
     #[inline(always)]
-    fn spread_along(&self, v: [T; 2]) -> T {
+    fn alpha_along(&self, v: [T; 2]) -> T {
         let [u, c] = self.wind.to_wind(v);
-        spread([u, c], [self.sigma_u, self.sigma_c])
+        alpha([u, c], [self.sigma_u, self.sigma_c])
     }
 }
 
 /// sqrt 2 times the standard deviation of slopes along a horizontal vector (Beckmann's alpha), times its length; all in the wind's
 /// axes.
 #[inline(always)]
-pub(crate) fn spread<T: Real>([u, c]: [T; 2], [sigma_u, sigma_c]: [T; 2]) -> T {
+pub(crate) fn alpha<T: Real>([u, c]: [T; 2], [sigma_u, sigma_c]: [T; 2]) -> T {
     let (u, c) = (u * sigma_u, c * sigma_c);
     T::of(SQRT_2) * u.mul_add(u, c * c).sqrt()
 }
@@ -487,7 +487,7 @@ impl<T: Real> Lobe<T> {
         let g = self.facets.geometry::<E>(i, o, n);
         let mut f = T::of(0.0);
         if parts.facets {
-            f = self.smooth_fraction * self.facets.lit(&g, n.is_none());
+            f = self.smooth_fraction * self.facets.eval_above(&g, n.is_none());
         }
         if parts.whitecaps {
             f = self.whitecap_fraction.mul_add(self.whitecap_brdf, f);
@@ -551,7 +551,7 @@ pub(crate) const BOUND_SLACK: f64 = 1.11;
 
 impl Facets<f64> {
     /// How far, in slope upwind and crosswind, a wave's slope may be from a facet's: a tilt's standard deviation there.
-    pub(crate) fn spread(&self, facet: DVec2) -> DVec2 {
+    pub(crate) fn slope_width(&self, facet: DVec2) -> DVec2 {
         let widened = if self.slope_measure { DVec2::ONE } else { DVec2::ONE + facet * facet };
         DVec2::new(self.sigma_u, self.sigma_c) * widened
     }

@@ -306,6 +306,13 @@ impl Water {
         self.slopes.facets_beside_fading(footprint)
     }
 
+    /// The same sea with other slope variances of the facets, upwind and crosswind.
+    pub(crate) fn with_variances(mut self, variances: [f64; 2]) -> Self {
+        self.variances = variances;
+        self.lobe.facets = self.parameters.facets(&self.wind, [self.ior, self.extinction], variances);
+        self
+    }
+
     /// The same sea under a wind from another azimuth, in degrees.
     pub(crate) fn turned(mut self, degrees: f64) -> Self {
         self.parameters.wind_direction = degrees;

@@ -110,9 +110,9 @@ impl<T: Tabulated> FineGrid<T> {
     #[inline(always)]
     pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
         let zero = T::of(0.0);
-        let lit = T::lt(zero, i[2]) & T::lt(zero, o[2]);
+        let upper = T::lt(zero, i[2]) & T::lt(zero, o[2]);
         let [above_i, above_o] = [i, o].map(|v| [v[0], v[1], T::max(v[2], zero)]);
-        if !T::may_hold(lit) {
+        if !T::may_hold(upper) {
             return defined(i, o, [i[2], o[2]], zero);
         }
         let place = self.place(above_i, above_o);
@@ -131,7 +131,7 @@ impl<T: Tabulated> FineGrid<T> {
         if parts.whitecaps && self.whitecaps {
             f = (self.lobe.whitecap_brdf * T::of(1.0 / SHARES)).mul_add(share, f);
         }
-        defined(i, o, [i[2], o[2]], T::select(lit, f, zero))
+        defined(i, o, [i[2], o[2]], T::select(upper, f, zero))
     }
 
     /// The logarithm of the ratio to level water, and [`SHARES`] times the share of whitecaps.

@@ -15,7 +15,7 @@
 //! With [`Average::Report`] f is the report's mean instead, without `(N.o)/o_z`. Then waves count most just before they
 //! turn from the observer: the mean is Gauss and Legendre's over seven slopes up to there, in the observer's plane.
 
-use crate::brdf::lobe::{defined, spread};
+use crate::brdf::lobe::{alpha, defined};
 use crate::brdf::shadowing::cos_lambda;
 use crate::brdf::{Lobe, Parts};
 use crate::config::{Average, Surface, Water};
@@ -181,8 +181,8 @@ impl<T: Tabulated> MeanLobe<T> {
     #[inline(always)]
     pub fn eval(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
         let zero = T::of(0.0);
-        let lit = T::lt(zero, i[2]) & T::lt(zero, o[2]);
-        if !T::may_hold(lit) {
+        let upper = T::lt(zero, i[2]) & T::lt(zero, o[2]);
+        if !T::may_hold(upper) {
             return defined(i, o, [i[2], o[2]], zero);
         }
         let wind = &self.lobe.facets.wind;
@@ -191,7 +191,7 @@ impl<T: Tabulated> MeanLobe<T> {
         let (local_i, local_o) = (wind.vector_to_wind(above(i)), wind.vector_to_wind(above(o)));
         let mut reflected = zero;
         if parts.facets {
-            reflected = self.facets(local_i, local_o, lit);
+            reflected = self.facets(local_i, local_o, upper);
         }
         if parts.whitecaps {
             let foam = if self.report {
@@ -205,18 +205,18 @@ impl<T: Tabulated> MeanLobe<T> {
             reflected = reflected * local_o[2];
         }
         // Over cos theta_i cos theta_r (1 + L_i + L_o).
-        let masked = |v: Local<T>| cos_lambda(v[2], spread([v[0], v[1]], self.sigma));
+        let masked = |v: Local<T>| cos_lambda(v[2], alpha([v[0], v[1]], self.sigma));
         let area = local_o[2].mul_add(masked(local_i), local_i[2] * masked(local_o));
         let area = local_i[2].mul_add(local_o[2], area);
-        defined(i, o, [i[2], o[2]], T::select(lit, reflected / T::max(area, T::TINY), zero))
+        defined(i, o, [i[2], o[2]], T::select(upper, reflected / T::max(area, T::TINY), zero))
     }
 
     /// What facets reflect: their density along the half vector times the mean of the rest over the waves that carry them.
     #[inline(always)]
-    fn facets(&self, i: Local<T>, o: Local<T>, lit: T::Mask) -> T {
+    fn facets(&self, i: Local<T>, o: Local<T>, upper: T::Mask) -> T {
         let h = [0, 1, 2].map(|k| i[k] + o[k]);
         let lean = -T::max(h[2], T::SMALL).recip();
-        let cell = self.cell([h[0] * lean, h[1] * lean], lit);
+        let cell = self.cell([h[0] * lean, h[1] * lean], upper);
         let [density, mean_u, mean_c, variance_u, variance_c, ..] = cell;
         if !T::may_hold(T::lt(T::of(0.0), density)) {
             return T::of(0.0);
@@ -264,30 +264,30 @@ impl<T: Tabulated> MeanLobe<T> {
         let n_z = (one + lean).rsqrt();
         let cosine = |v: Local<T>| (v[2] - v[0].mul_add(slope[0], v[1] * slope[1])) * n_z;
         let (cos_i, cos_o) = (cosine(i), cosine(o));
-        let lit = T::lt(zero, cos_i) & T::lt(zero, cos_o);
-        if !T::may_hold(lit) {
+        let upper = T::lt(zero, cos_i) & T::lt(zero, cos_o);
+        if !T::may_hold(upper) {
             return zero;
         }
         let tangential = |v: Local<T>| [0, 1].map(|k| v[2].mul_add(slope[k], v[k]) * n_z);
         let sigmas = [facets.sigma_u, facets.sigma_c];
-        let mut spreads = [zero; 2];
+        let mut alphas = [zero; 2];
         if facets.needs_spreads() {
-            spreads = [spread(tangential(i), sigmas), spread(tangential(o), sigmas)];
+            alphas = [alpha(tangential(i), sigmas), alpha(tangential(o), sigmas)];
         }
-        let area = facets.masked_area(rho, [cos_i, cos_o], spreads);
+        let area = facets.masked_area(rho, [cos_i, cos_o], alphas);
         let seen = if self.report { cos_i } else { cos_i * cos_o };
-        T::select(lit, seen / T::max(area, T::TINY), zero)
+        T::select(upper, seen / T::max(area, T::TINY), zero)
     }
 
     /// Facets along a half vector of a slope upwind and crosswind; none beyond the table.
     #[inline(always)]
-    fn cell(&self, slope: [T; 2], lit: T::Mask) -> [T; 8] {
+    fn cell(&self, slope: [T; 2], upper: T::Mask) -> [T; 8] {
         let (zero, end) = (T::of(0.0), T::of(f64::from(self.rows - 1)));
         let middle = T::of(0.5 * f64::from(self.rows - 1));
         let place =
             [0, 1].map(|k| (slope[k] * (slope[k] * slope[k]).atan_over()).mul_add(self.inv_step[k], middle));
         let within = |x: T| !T::lt(x, zero) & T::lt(x, end);
-        let inside = lit & within(place[0]) & within(place[1]);
+        let inside = upper & within(place[0]) & within(place[1]);
         let [(row, u), (column, c)] = place.map(|x| T::select(inside, x, zero).step(self.rows - 1));
         let rows = f64::from(self.rows);
         let index = row.mul_add(T::of(rows), column);

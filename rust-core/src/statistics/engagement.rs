@@ -1,5 +1,6 @@
 //! Engagements: a laser, its beam and the observers at one time (Eqs. 28, 57-58).
 
+use super::beam::Beam;
 use crate::config::LONGEST_TIME;
 use crate::error::{Error, refuse};
 use glam::DVec3;
@@ -26,6 +27,7 @@ pub struct Engagement {
     laser: [f64; 3],
     direction: [f64; 3],
     observers: Vec<[f64; 3]>,
+    beam: Option<Beam>,
 }
 
 impl Engagement {
@@ -66,7 +68,8 @@ impl Engagement {
         for observer in observers {
             position("observers", *observer)?;
         }
-        let engagement = Self { time, laser, direction: direction.into(), observers: observers.into() };
+        let direction = direction.into();
+        let engagement = Self { time, laser, direction, observers: observers.into(), beam: None };
         if !within(engagement.target()) {
             return refuse(name, shown(given), "a beam that meets the water at most 1e9 m from 0");
         }
@@ -79,6 +82,11 @@ impl Engagement {
         let (sin, cos) = incidence.to_radians().sin_cos();
         let observers: Vec<_> = directions.iter().map(|d| d.map(|x| observers * x)).collect();
         Self::new(0.0, [-laser * sin, 0.0, laser * cos], Aim::Target([0.0; 3]), &observers)
+    }
+
+    /// The same with a beam that widens on its way, which gives the footprint: [`crate::Spot`].
+    pub fn with_beam(self, beam: Beam) -> Self {
+        Self { beam: Some(beam), ..self }
     }
 
     /// The same with the observers whose numbers are kept.
@@ -106,6 +114,16 @@ impl Engagement {
     pub fn target(&self) -> [f64; 3] {
         let (laser, beam) = (DVec3::from(self.laser), DVec3::from(self.direction));
         (laser - laser.z / beam.z * beam).truncate().extend(0.0).into()
+    }
+
+    /// The beam; `None` where the footprint is the sea's.
+    pub fn beam(&self) -> Option<Beam> {
+        self.beam
+    }
+
+    /// From the laser to where the beam meets the mean surface, m.
+    pub fn range(&self) -> f64 {
+        self.laser[2] / -self.direction[2]
     }
 
     /// Unit vectors from the target to the laser and to every observer (Eqs. 83, 86).

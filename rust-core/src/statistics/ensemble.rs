@@ -34,6 +34,7 @@
 //! ```
 
 use super::engagement::Engagement;
+use super::spot::Spot;
 use crate::config::Water;
 use crate::config::parameters::DRAWN;
 use crate::error::Error;
@@ -81,6 +82,9 @@ pub struct Ensemble {
     /// Place in m and time in s at which the drawn phases count. Any will do, but evenly spread phases help most where
     /// the beam meets the water: [`Ensemble::around`].
     pub phases_at: ([f64; 2], f64),
+    /// Over what the wave's normal at a hit is a mean; `None`: the normal of the hit itself, as in the report.
+    /// [`Ensemble::over`] sets it, and what follows for facets.
+    pub spot: Option<Spot>,
 }
 
 /// Where the beam met the water in one instance.
@@ -88,7 +92,7 @@ pub struct Ensemble {
 pub struct Hit {
     /// m.
     pub position: [f64; 3],
-    /// The wave normal there.
+    /// The wave normal there, or its mean over the spot.
     pub normal: [f64; 3],
     /// 0 or 1 where whitecaps are drawn, else their probability.
     pub whitecap: f64,
@@ -120,7 +124,17 @@ impl Ensemble {
             presence: WhitecapMode::Drawn,
             proposal: Proposal::Plain,
             phases_at: ([0.0; 2], 0.0),
+            spot: None,
         })
+    }
+
+    /// The same with normals that are means over a spot, weighted by its intensity. Slopes within the spot are then facets':
+    /// the mean of f is kept, and its spread is less.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for an infinite footprint.
+    pub fn over(self, spot: Spot) -> Result<Self, Error> {
+        Ok(Self { water: spot.averaged(&self.water)?, spot: Some(spot), ..self })
     }
 
     /// The same, with Sobol draws whose phases count where and when this engagement's beam meets the mean surface.
@@ -143,7 +157,18 @@ impl Ensemble {
         let place = worker.ray.first_hit(&worker.surface, laser, beam)?.truncate().to_array();
         let point = worker.surface.point(place);
         let whitecap = self.whitecap(&worker.surface, place, &point);
-        Some(self.hit_of(&point, whitecap, place, chance))
+        Some(Hit {
+            normal: self.normal(worker, place, &point),
+            ..self.hit_of(&point, whitecap, place, chance)
+        })
+    }
+
+    /// The normal about which facets lie, where a beam meets a point of the surface at a place in m.
+    pub(super) fn normal(&self, worker: &Worker, place: [f64; 2], point: &Point) -> [f64; 3] {
+        match &self.spot {
+            None => point.normal(),
+            Some(spot) => spot.mean(&worker.surface, place).normal(),
+        }
     }
 
     /// Probability of a whitecap over a place in m of a drawn surface, where it has this point: by the acceleration there and, with

@@ -159,16 +159,16 @@ impl Exact {
 
     fn source(&self, engagement: &Engagement) -> Source {
         let direction = -DVec3::from(engagement.direction());
-        let lit = self.slopes.as_ref().map_or(direction.z, |slopes| {
+        let area = self.slopes.as_ref().map_or(direction.z, |slopes| {
             // Slopes have no mean: where all face the source the area shown is that of the level surface.
             if slopes.all_face(self.wind.to_wind(direction.truncate()), direction.z) {
                 direction.z
             } else {
-                let [lit] = self.sum(slopes, FINE, |s, p, _| [p * shown(s, direction)]);
-                lit
+                let [area] = self.sum(slopes, FINE, |s, p, _| [p * shown(s, direction)]);
+                area
             }
         });
-        Source { direction, lit }
+        Source { direction, area }
     }
 
     /// What waves leave visible of the hits to an observer above them, on average.
@@ -223,7 +223,7 @@ impl Exact {
             means.f_cos += f * share_cos;
             means.whitecaps = share;
         }
-        let scale = self.visible(source, o) / source.lit;
+        let scale = self.visible(source, o) / source.area;
         // Far out, where the density is nothing but ripples, sums may fall below 0.
         let sums = [means.f, means.f_cos, means.f_squared, means.whitecaps];
         let [f, f_cos, f_squared, whitecaps] = sums.map(|sum| (scale * sum).max(0.0));
@@ -236,7 +236,7 @@ impl Exact {
         let h = i + o;
         // The slope that mirrors the source to the observer, and how far facets let the wave's slope be from it.
         let specular = self.wind.to_wind(-h.truncate() / h.z);
-        let lobe = self.water.lobe.facets.spread(specular);
+        let lobe = self.water.lobe.facets.slope_width(specular);
         let Some((low, high)) = slopes.meeting(specular, lobe) else { return };
 
         // Along the view's azimuth slopes end where they turn away from the observer, or from a source in line.
@@ -328,7 +328,7 @@ struct Errors {
 /// The source's direction and the area that the surface shows it, per level area.
 struct Source {
     direction: DVec3,
-    lit: f64,
+    area: f64,
 }
 
 /// The area that a slope shows a direction, per level area: `max(0, N.v)/N_z`.

@@ -91,7 +91,7 @@ impl Cell {
     pub fn new(slopes: &Slopes, water: &Water, wind: WindFrame, half: DVec2) -> Self {
         let facets = &water.lobe.facets;
         let in_world = |v: DVec2| normal(wind.to_world(v).into());
-        let lobe = facets.spread(half);
+        let lobe = facets.slope_width(half);
         let mut cell = Self::default();
         let Some((low, high)) = slopes.meeting(half, lobe) else { return cell };
         let step = slopes.step(lobe);

@@ -359,7 +359,7 @@ fn largest(lobe: &Lobe<f64>, [i, o]: [[f64; 3]; 2]) -> f64 {
     }
     let specular = -half.truncate() / half.z;
     let wind = DVec2::new(lobe.facets.wind.cos, lobe.facets.wind.sin);
-    let spread = lobe.facets.spread(DVec2::new(specular.dot(wind), specular.dot(wind.perp())));
+    let spread = lobe.facets.slope_width(DVec2::new(specular.dot(wind), specular.dot(wind.perp())));
     let offsets =
         (-REACH..=REACH).flat_map(|u| (-REACH..=REACH).map(move |c| DVec2::new(u.into(), c.into())));
     let f = |at: DVec2| {

@@ -140,20 +140,20 @@ impl Slopes {
     }
 
     /// Standard deviation of the slope along a horizontal vector upwind and crosswind, times its length.
-    pub fn spread(&self, along: DVec2) -> f64 {
+    pub fn deviation(&self, along: DVec2) -> f64 {
         (self.sigma * along).length()
     }
 
     /// Whether no slope in the tables turns from a direction, given by its horizontal part upwind and crosswind and its
     /// height.
     pub fn all_face(&self, horizontal: DVec2, height: f64) -> bool {
-        height > END * self.spread(horizontal)
+        height > END * self.deviation(horizontal)
     }
 
     /// Smith's term (Eq. 66) for a direction, given by its horizontal part upwind and crosswind and its height.
     pub fn lambda(&self, horizontal: DVec2, height: f64) -> f64 {
         let height = height.max(1e-9);
-        cos_lambda(height, SQRT_2 * self.spread(horizontal)) / height
+        cos_lambda(height, SQRT_2 * self.deviation(horizontal)) / height
     }
 
     /// The rectangle in which the drawn slopes and a lobe of facets, about a slope and so wide, meet.

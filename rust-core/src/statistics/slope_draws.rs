@@ -136,7 +136,7 @@ impl Ensemble {
         let wind = DVec2::from_angle(self.waves.wind_azimuth);
         let world = -half.truncate() / half.z.max(1e-9);
         let specular = DVec2::new(world.dot(wind), world.dot(wind.perp()));
-        let facets = self.water.lobe.facets.spread(specular);
+        let facets = self.water.lobe.facets.slope_width(specular);
         let [upwind, crosswind, _] = variances(&self.waves);
         let [drawn, needed] = [DVec2::new(upwind, crosswind), facets * facets].map(|v| 1.0 / v);
         Gaussian {
@@ -215,8 +215,9 @@ impl Ensemble {
             return 0.0;
         }
         let place = laser + back * beam;
+        let normal = self.normal(worker, [0.0; 2], &point);
         let whitecap = self.whitecap(&worker.surface, [0.0; 2], &point);
-        *hit = self.hit_of(&point, whitecap, [place.x, place.y], chance);
+        *hit = Hit { normal, ..self.hit_of(&point, whitecap, [place.x, place.y], chance) };
         // The sea's origin is the hit's place.
         let origin = place.truncate().extend(0.0);
         self.observe(

@@ -11,6 +11,7 @@ pub use crate::sea::spectrum::share;
 pub use component::Component;
 pub use random::{Draws, InstanceRng};
 pub use ray::SurfaceRay;
+pub(crate) use realised::mean_of_wave;
 pub use realised::{Point, Surface, normal};
 pub use wave_sums::WaveSums;
 pub use waves::Waves;

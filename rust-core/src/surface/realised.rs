@@ -191,6 +191,15 @@ impl Surface {
         }
     }
 
+    /// The mean of everything under a Gaussian weight about a place in m, which has these variances along x and y and this
+    /// covariance in m^2.
+    pub(crate) fn mean(&self, place: [f64; 2], covariance: [f64; 3]) -> Point {
+        self.total(place, |lanes| {
+            let (a, kx, ky) = (&self.amplitude[lanes], &self.k_x[lanes], &self.k_y[lanes]);
+            std::array::from_fn(|l| a[l] * mean_of_wave(covariance, [kx[l], ky[l]]))
+        })
+    }
+
     /// The waves with these amplitudes, m, by lanes.
     #[inline(always)]
     fn total(&self, place: [f64; 2], amplitudes: impl Fn(usize) -> [f64; LANES]) -> Point {
@@ -237,6 +246,12 @@ impl Surface {
             [*a, self.phases(place, lanes), k]
         })
     }
+}
+
+/// The Fourier transform of a Gaussian with these variances along x and y and this covariance in m^2, at wave numbers in rad/m:
+/// what its mean leaves of a wave.
+pub(crate) fn mean_of_wave([xx, yy, xy]: [f64; 3], [kx, ky]: [f64; 2]) -> f64 {
+    (-0.5 * (xx * kx * kx + yy * ky * ky) - xy * kx * ky).exp()
 }
 
 /// Sum of the lanes, in a fixed order.

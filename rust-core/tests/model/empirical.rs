@@ -244,7 +244,7 @@ fn show(found: &HeldOut) {
 /// Between nodes; `cargo xtask verify` takes 240 points.
 #[test]
 fn between_nodes() {
-    let found = held_out(16, 1);
+    let found = held_out(6, 1);
     show(&found);
     assert!(quantile(&found.in_plane, 1.0) < 0.05);
     assert!(share(&found.slopes[0], 0.1) > 0.98 && share(&found.slopes[1], 0.1) > 0.98);

@@ -19,6 +19,7 @@ mod readings;
 mod reference;
 mod sampling;
 mod slope_budget;
+mod spot;
 mod surfaces;
 mod swell;
 mod threads;

@@ -1,6 +1,6 @@
 //! Draws of seas, directions and uniform numbers, with more than their share of corners.
 
-use prob_water::{Fresnel, Parameters, Readings, Salinity, SlopeMeasure, Wind};
+use prob_water::{Fresnel, Hiding, Parameters, Readings, Salinity, SlopeMeasure, SlopeStatistics, Wind};
 use rand::rngs::StdRng;
 use rand::{Rng, RngCore, SeedableRng};
 use std::f64::consts::TAU;
@@ -78,6 +78,18 @@ impl Draw {
         }
     }
 
+    /// The corrected equations, the print, or some of it; not Eq. 70, which seas of many surfaces refuse.
+    fn readings(&mut self) -> Readings {
+        match self.pick(4) {
+            0 | 1 => Readings::CORRECTED,
+            2 => Readings::AS_PRINTED,
+            _ => Readings::equations()
+                .map(|(_, reading)| reading)
+                .filter(|reading| *reading != Readings::EQ_70 && self.flag())
+                .fold(Readings::CORRECTED, |all, reading| all | reading),
+        }
+    }
+
     /// Any sea of the closed form: every switch, and every range to its ends.
     pub fn flat_sea(&mut self) -> Parameters {
         let sea = Parameters {
@@ -104,7 +116,9 @@ impl Draw {
             water: self.one_of(&[Salinity::Ocean, Salinity::Fresh]),
             fresnel: self.one_of(&[Fresnel::Schlick, Fresnel::Exact]),
             slope_measure: self.one_of(&[SlopeMeasure::Angle, SlopeMeasure::Slope]),
-            readings: self.one_of(&[Readings::CORRECTED, Readings::CORRECTED, Readings::AS_PRINTED]),
+            slopes: self.one_of(&[SlopeStatistics::CoxMunk, SlopeStatistics::BreonHenriot]),
+            readings: self.readings(),
+            hiding: self.one_of(&[Hiding::Report, Hiding::Once]),
             whitecaps: self.flag(),
             shadowing: self.flag(),
             gram_charlier: self.flag(),

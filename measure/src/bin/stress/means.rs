@@ -3,9 +3,10 @@
 use crate::draw::{Draw, Vec3};
 use crate::tally::{Tally, fine, shown};
 use prob_water::brdf::up;
+use prob_water::whitecap::WhitecapOnset;
 use prob_water::{
-    Average, EmpiricalLobe, EnsembleLobe, FacetTable, Fresnel, OffPlaneModel, Parameters, Surface, Table,
-    Wind,
+    Average, EmpiricalLobe, EnsembleLobe, FacetTable, Fresnel, OffPlaneModel, Parameters, SlopeBudget,
+    SpectrumModel, Surface, Table, Wind,
 };
 
 /// Evaluations that the making of a lobe is worth.
@@ -108,6 +109,12 @@ pub fn ensemble(draw: &mut Draw, tally: &mut Tally) {
 /// A sea with drawn waves: any wind, few or many components, deep and shallow, with and without a shore.
 pub fn drawn_sea(draw: &mut Draw, surface: Surface) -> Parameters {
     let components = draw.one_of(&[4, 5, 5, 20, 21, 64]);
+    let fetch = if draw.flag() { f64::INFINITY } else { draw.log_between(1.0, 1e6) };
+    let spectrum = match draw.pick(4) {
+        0 => SpectrumModel::Elfouhaily,
+        1 if fetch.is_finite() => draw.one_of(&[SpectrumModel::Jonswap, SpectrumModel::Tma]),
+        _ => SpectrumModel::Report,
+    };
     let sea = Parameters {
         surface,
         footprint: Some(draw.log_between(0.02, 3.0)),
@@ -120,7 +127,10 @@ pub fn drawn_sea(draw: &mut Draw, surface: Surface) -> Parameters {
             _ => draw.between(-1e4, 1e4),
         },
         depth: if draw.flag() { f64::INFINITY } else { draw.log_between(0.1, 1e3) },
-        fetch: if draw.flag() { f64::INFINITY } else { draw.log_between(1.0, 1e6) },
+        fetch,
+        spectrum,
+        slope_budget: draw.one_of(&[SlopeBudget::Report, SlopeBudget::Closed]),
+        whitecap_onset: draw.one_of(&[WhitecapOnset::Calibrated, WhitecapOnset::Ramp, WhitecapOnset::Step]),
         ..draw.flat_sea()
     };
     draw.about(sea)
