@@ -113,10 +113,19 @@ impl Spot {
 
     /// Slope variances, upwind and crosswind, about their mean over the spot, of all that may be drawn.
     pub(super) fn slope_variances(&self, waves: &Waves) -> [f64; 2] {
-        let Some([low, high]) = waves.log_range else { return [0.0; 2] };
+        let mut sums = DVec2::ZERO;
+        // A swell comes from one direction, nearly.
+        let nodes = waves.swell_nodes().count();
+        for wave in waves.swell_nodes() {
+            let k = wave.wave_number * DVec2::from_angle(wave.azimuth);
+            let left = mean_of_wave(self.covariance(), k.into()).powi(2);
+            let slope = DVec2::from_angle(wave.azimuth - waves.wind_azimuth);
+            let share = waves.of_swell() as f64 / nodes as f64;
+            sums += share * wave.slope_variance() * (1.0 - left) * slope * slope;
+        }
+        let Some([low, high]) = waves.log_range else { return sums.into() };
         let (rule, s) = (gauss_legendre(NODES), &waves.spectrum);
         let azimuths = midpoints(-FRAC_PI_2, FRAC_PI_2, PI / AZIMUTHS);
-        let mut sums = DVec2::ZERO;
         for piece in s.pieces(low.exp(), high.exp()).windows(2) {
             for (log_k, width) in panels(&rule, piece[0].ln(), piece[1].ln(), 1.0) {
                 let k = log_k.exp();

@@ -3,8 +3,8 @@
 use crate::common::water;
 use prob_water::surface::{Component, InstanceRng};
 use prob_water::{
-    Aim, Draws, Engagement, Ensemble, Exact, Layout, Mesh, Parameters, Proposal, RealisedSurface, Surface,
-    Water, whitecap,
+    Aim, Draws, Engagement, Ensemble, Exact, Layout, Mesh, Parameters, Proposal, RealisedSurface, Spot,
+    SpotShape, Surface, Water, whitecap,
 };
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -111,6 +111,36 @@ fn the_winds_waves_stay() {
             assert_eq!((&both[..5], both.len()), (&plain[..], 10));
         }
     }
+}
+
+/// Of a spot of 15 m the facets get the swell's slopes within, in a calm too: what the mean over the spot takes from drawn seas, along
+/// the wind's axes, as if all its waves came from one direction. To 4 %: this is the eighth moment of the spectrum, of whose tail the
+/// means' 128 frequencies leave out so much.
+#[test]
+fn facets_get_the_swells_slopes_within_a_spot() {
+    let wide = Parameters { footprint: Some(15.0), ..parameters(0.0, 2.0, 12.0) };
+    let sea = wide.configure().unwrap();
+    let engagement =
+        Engagement::new(0.0, [0.0, 0.0, 1e3], Aim::Target([0.0; 3]), &[[0.0, 0.0, 1e3]]).unwrap();
+    let spot = Spot::new(&engagement, &wide, SpotShape::Circle).unwrap();
+    let after = Ensemble::new(&sea).unwrap().over(spot).unwrap().water;
+    let within = [0, 1].map(|axis| after.variances[axis] - sea.variances[axis]);
+    let lost: Vec<f64> = (0..20_000)
+        .map(|instance| {
+            let taken = |c: &Component| 1.0 - (-(c.wave_number * 15.0).powi(2) / 16.0).exp();
+            let slope = |c: &Component| 0.5 * (c.amplitude * c.wave_number).powi(2);
+            components(&sea, Draws::Stratified, instance).iter().map(|c| slope(c) * taken(c)).sum()
+        })
+        .collect();
+    let [expected, error] = mean(&lost);
+    println!("{within:?}, together {expected:.3e} +- {error:.1e}");
+    assert!(
+        (within[0] + within[1] - expected).abs() < 4.0 * error + 0.04 * expected,
+        "{within:?} {expected}"
+    );
+    // The swell comes 50 degrees from the wind.
+    let share = within[0] / (within[0] + within[1]);
+    assert!((share - 50f64.to_radians().cos().powi(2)).abs() < 1e-3, "{share}");
 }
 
 /// Whitecaps cover Eq. 51's fraction beside a swell, whose acceleration counts; a wind's onset alone would have more.
