@@ -1,8 +1,5 @@
 """The plugin and the variants for all tests; `--full` runs the long campaigns."""
 
-import os
-
-import drjit
 import pytest
 
 from validation.support.mitsuba_setup import load_plugin, usable_llvm
@@ -10,12 +7,6 @@ from validation.support.mitsuba_setup import load_plugin, usable_llvm
 
 def pytest_addoption(parser):
     parser.addoption("--full", action="store_true", help="long campaigns (`cargo xtask verify`)")
-
-
-def pytest_configure():
-    # Workers share the processors: one thread each.
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        drjit.set_thread_count(1)
 
 
 @pytest.fixture(scope="session")

@@ -121,17 +121,7 @@ fn pytest(options: &[&str]) -> Result<()> {
     let workers = std::thread::available_parallelism().map_or(1, |n| n.get().min(4)).to_string();
     util::run(
         setup::module("pytest")
-            .args([
-                "validation",
-                "-q",
-                "-rs",
-                "-p",
-                "no:cacheprovider",
-                "--dist",
-                "worksteal",
-                "-n",
-                &workers,
-            ])
+            .args(["validation", "-q", "-rs", "-p", "no:cacheprovider", "--dist", "loadfile", "-n", &workers])
             .args(options)
             .env("PYTHONDONTWRITEBYTECODE", "1"),
         "pytest",
