@@ -8,10 +8,14 @@ use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::Stdio;
 
-/// Everything that users get and all tests of it, with optimisation. Cargo unifies the features of dependencies over what one call
-/// selects: each other selection would compile the library once more.
-pub const EVERYTHING: [&str; 8] =
-    ["--release", "--workspace", "--exclude", "xtask", "--lib", "--bins", "--tests", "--examples"];
+/// What users get, with optimisation. Cargo unifies the features of dependencies over what one call selects: each other selection
+/// would compile the library once more.
+pub const USERS: [&str; 6] = ["--target-dir", "target", "--release", "--workspace", "--exclude", "xtask"];
+
+/// All of it, with its tests.
+pub fn everything() -> Vec<&'static str> {
+    [&USERS[..], &["--lib", "--bins", "--tests", "--examples"]].concat()
+}
 
 /// The output of one package.
 pub struct Built {
@@ -50,7 +54,7 @@ pub fn static_library(package_directory: &str, arguments: &[&str]) -> Result<Bui
 
 /// The programs of all examples of the library.
 pub fn examples() -> Result<Vec<PathBuf>> {
-    let arguments = ["build", "--quiet", "--release", "--workspace", "--exclude", "xtask", "--examples"];
+    let arguments = [&["build", "--quiet", "--examples"], &USERS[..]].concat();
     let messages = messages(&arguments, "the examples")?;
     let mut programs: Vec<PathBuf> = messages
         .iter()

@@ -3,8 +3,7 @@
 //! The style checks come last: a newer toolchain may warn of more, and that must not hide whether the numbers are right.
 
 use crate::{
-    build, c_api, cargo, compat, equations, errors, figures, fuzz, parameters, sanitize, setup, stress, tidy,
-    util,
+    build, c_api, cargo, compat, equations, errors, fuzz, parameters, sanitize, setup, stress, tidy, util,
 };
 use anyhow::{Result, bail};
 use std::time::{Duration, Instant};
@@ -78,25 +77,20 @@ pub fn test() -> Result<()> {
 fn compile() -> Result<Outcome> {
     std::thread::scope(|scope| {
         let setup = scope.spawn(setup::setup);
-        util::run(
-            util::cargo().args(["build", "--target-dir", "target"]).args(cargo::EVERYTHING),
-            "cargo build",
-        )?;
+        util::run(util::cargo().arg("build").args(cargo::everything()), "cargo build")?;
         setup.join().expect("does not panic")
     })?;
     Ok(Passed)
 }
 
 fn cargo_test() -> Result<Outcome> {
-    let users = ["test", "--target-dir", "target", "--release", "--workspace", "--exclude", "xtask"];
-    util::run(util::cargo().args(users), "cargo test")?;
+    util::run(util::cargo().arg("test").args(cargo::USERS), "cargo test")?;
     util::run(util::cargo().args(["test", "--quiet", "-p", "xtask"]), "cargo test of xtask")?;
     Ok(Passed)
 }
 
 fn plugin_build() -> Result<()> {
-    let selection = [&["--target-dir", "target"], &cargo::EVERYTHING[..]].concat();
-    build::build_with(&build::default_out(), &selection, &[])
+    build::build_with(&build::default_out(), &cargo::everything(), &[])
 }
 
 /// Runs the examples of the library; each must succeed and print something.
@@ -151,8 +145,7 @@ pub fn verify() -> Result<()> {
     sanitize::sanitize()?;
     compat::compat()?;
     setup::peer()?;
-    figures::build_command()?;
-    errors::build_campaign()?;
+    compile()?;
     pytest(&["--full", "-s", "-n", "0"])?;
     util::run(&mut setup::module("validation.error_budget.float32"), "validation.error_budget.float32")?;
     errors::errors(&[])
