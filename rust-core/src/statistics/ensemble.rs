@@ -156,19 +156,7 @@ impl Ensemble {
         let (laser, beam) = (engagement.laser().into(), engagement.direction().into());
         let place = worker.ray.first_hit(&worker.surface, laser, beam)?.truncate().to_array();
         let point = worker.surface.point(place);
-        let whitecap = self.whitecap(&worker.surface, place, &point);
-        Some(Hit {
-            normal: self.normal(worker, place, &point),
-            ..self.hit_of(&point, whitecap, place, chance)
-        })
-    }
-
-    /// The normal about which facets lie, where a beam meets a point of the surface at a place in m.
-    pub(super) fn normal(&self, worker: &Worker, place: [f64; 2], point: &Point) -> [f64; 3] {
-        match &self.spot {
-            None => point.normal(),
-            Some(spot) => spot.mean(&worker.surface, place).normal(),
-        }
+        Some(self.hit_at(&worker.surface, place, &point, chance))
     }
 
     /// Probability of a whitecap over a place in m of a drawn surface, where it has this point: by the acceleration there and, with
@@ -182,11 +170,15 @@ impl Ensemble {
         }
     }
 
-    /// The hit at a place whose surface is known, with the probability of a whitecap.
-    pub(crate) fn hit_of(&self, point: &Point, probability: f64, place: [f64; 2], chance: f64) -> Hit {
+    /// The hit at a place in m of a drawn surface, where it has this point.
+    pub(super) fn hit_at(&self, surface: &Surface, place: [f64; 2], point: &Point, chance: f64) -> Hit {
+        let probability = self.whitecap(surface, place, point);
         Hit {
             position: [place[0], place[1], point.height],
-            normal: point.normal(),
+            normal: match &self.spot {
+                None => point.normal(),
+                Some(spot) => spot.mean(surface, place).normal(),
+            },
             whitecap: match self.presence {
                 WhitecapMode::Drawn => f64::from(chance < probability),
                 WhitecapMode::Expected => probability,

@@ -215,9 +215,8 @@ impl Ensemble {
             return 0.0;
         }
         let place = laser + back * beam;
-        let normal = self.normal(worker, [0.0; 2], &point);
-        let whitecap = self.whitecap(&worker.surface, [0.0; 2], &point);
-        *hit = Hit { normal, ..self.hit_of(&point, whitecap, [place.x, place.y], chance) };
+        let position = [place.x, place.y, point.height];
+        *hit = Hit { position, ..self.hit_at(&worker.surface, [0.0; 2], &point, chance) };
         // The sea's origin is the hit's place.
         let origin = place.truncate().extend(0.0);
         self.observe(
