@@ -9,6 +9,8 @@ from validation.figures.data import BASE, Command, Table, column, in_plane, inci
 from validation.support import look
 
 INCIDENCE = BASE["incidence"]
+#: Whitecaps as in the built-in table.
+CASE = {"whitecap_onset": "calibrated"}
 WINDS = [4.0, 8.0, 24.0, 56.0]
 #: The azimuth the wind comes from, from the plane of incidence: along it, oblique, across it.
 AZIMUTHS = [0.0, 45.0, 90.0]
@@ -23,12 +25,12 @@ NEAR, WIDTHS = 15.0, 1.5
 
 def empirical(command: Command, case: dict, directions: np.ndarray, across: str) -> Table:
     """Mean and standard uncertainty by the table."""
-    return command.scenario(case | {"surface": "empirical", "across": across, "seed": 0}, directions, 1, None)
+    return command.scenario(CASE | case | {"surface": "empirical", "across": across, "seed": 0}, directions, 1, None)
 
 
 def full(command: Command, case: dict, directions: np.ndarray) -> Table:
     """Mean and standard deviation over infinitely many drawn surfaces."""
-    return command.scenario(case | {"statistics": "exact"}, directions, 1, "drawn")
+    return command.scenario(CASE | case | {"statistics": "exact"}, directions, 1, "drawn")
 
 
 def labelled(labels: Table, model: str, found: Table, **constants: float) -> Table:

@@ -1,4 +1,4 @@
-"""Our own figure: measured slope variances by wind, and what the model's drawn waves and facets have together."""
+"""Our own figures: measured slope variances by wind and by footprint beside those of the model."""
 
 import numpy as np
 from matplotlib.figure import Figure as Canvas
@@ -35,8 +35,13 @@ def table(name: str, speeds: np.ndarray, variances: list[list[float]]) -> Table:
 
 
 def facets(command: Command, speed: float, case: Case) -> list[float]:
+    """Slope variances of the facets under a wind, upwind and crosswind."""
+    return facets_at(command, {"wind_speed": speed} | case)
+
+
+def facets_at(command: Command, case: Case) -> list[float]:
     """Slope variances of the facets, upwind and crosswind."""
-    row = command.run("wind", parameters={"wind_speed": speed} | case)
+    row = command.run("wind", parameters=case)
     return [float(row[name][0]) for name in ("sigma_u2", "sigma_c2")]
 
 
@@ -103,6 +108,50 @@ def report_is_steeper_upwind(tables: Tables) -> Verdict:
     return Verdict(bool(found[0].min() > 1.1), f"over Cox and Munk's: {shown(found)}")
 
 
+#: Medians of the variance of all slopes of waves shorter than 2 D, at friction velocities from 18 to 24 cm/s: the RaDyO
+#: experiment of 2008 in the data of Laxague et al., doi 10.1109/TGRS.2025.3538460.
+RADYO = {0.02: 0.0199, 0.05: 0.0293, 0.15: 0.0351}
+RADYO_WINDS = (18.0, 21.0, 24.0)
+BUDGETS = {"report": ("tab:red", "facets, the report's budget"), "closed": ("tab:blue", "facets, closed budget")}
+
+
+def collect_by_footprint(command: Command, _: int) -> Tables:
+    """The facets' variance along and across the wind together, by footprint."""
+    footprints = np.unique(np.concatenate([np.geomspace(0.01, 1.0, 25), list(RADYO)]))
+    rows = []
+    for budget in BUDGETS:
+        for w in RADYO_WINDS:
+            total = [sum(facets_at(command, {"friction_velocity": w, "footprint": d, "slope_budget": budget})) for d in footprints]
+            rows.append({"budget": np.full(len(footprints), budget), "friction_velocity": np.full(len(footprints), w),
+                         "footprint": footprints, "variance": np.array(total)})
+    return {"by-footprint": stack(rows)}
+
+
+def draw_by_footprint(tables: Tables, page: Canvas) -> None:
+    """A band over the winds for each budget, and what was measured."""
+    axes = page.subplots()
+    for budget, (colour, label) in BUDGETS.items():
+        slow, middle, fast = (select(tables["by-footprint"], budget=budget, friction_velocity=w) for w in RADYO_WINDS)
+        axes.fill_between(middle["footprint"], slow["variance"], fast["variance"], color=colour, alpha=0.2, linewidth=0)
+        axes.plot(middle["footprint"], middle["variance"], color=colour, label=f"{label}, w* = 18 to 24 cm/s")
+    axes.plot(list(RADYO), list(RADYO.values()), "ko", label="measured, RaDyO 2008, medians")
+    axes.set(xscale="log", xlabel="footprint D, m", ylabel="slope variance of waves shorter than 2 D")
+    look.legend(page, axes)
+
+
+def over_the_model(tables: Tables, w: float) -> np.ndarray:
+    """What was measured over the report's facets at the same footprints."""
+    rows = select(tables["by-footprint"], budget="report", friction_velocity=w)
+    return np.array([measured / rows["variance"][rows["footprint"] == d].item() for d, measured in RADYO.items()])
+
+
+def measured_is_steeper(tables: Tables) -> Verdict:
+    """RaDyO's medians over the facets of the strongest of its winds, and that the ratio falls with the footprint."""
+    fast, middle = over_the_model(tables, RADYO_WINDS[2]), over_the_model(tables, RADYO_WINDS[1])
+    text = ", ".join(f"{ratio:.1f} at D = {d} m" for d, ratio in zip(RADYO, middle, strict=True))
+    return Verdict(bool(fast.min() > 1.2 and np.all(np.diff(middle) < 0)), f"over the report's facets at w* = 21 cm/s: {text}")
+
+
 FIGURES = [
     Figure(
         "slopes-by-wind", "Slope variances by wind: as measured and as modelled (not in the report)",
@@ -115,4 +164,12 @@ FIGURES = [
                closed_budget_is_cox_munks, own=True),
          Claim("With the report's they are steeper upwind, from 2 m/s by more than 10 %.", report_is_steeper_upwind,
                own=True)]),
+    Figure(
+        "slopes-by-footprint", "Slope variance of waves shorter than 2 D: as measured and as modelled (not in the report)",
+        "What waves that are not drawn have by the report's budget and by a closed one, for infinite fetch, beside medians of a "
+        "field experiment with a polarimetric camera under winds of the same friction velocities. Noise of the camera at high "
+        "wave numbers is part of what it measured, so that the order of magnitude is what can be compared.",
+        collect_by_footprint, draw_by_footprint,
+        [Claim("Measured slopes of short waves are steeper than the model's, the more so the shorter they are.",
+               measured_is_steeper, own=True)]),
 ]

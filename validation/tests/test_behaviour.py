@@ -251,7 +251,7 @@ def test_attributes(use, variant):
 def test_memory_stays(use, variant, surface, full):
     """Further loads and updates take no more memory than the first did, though nothing is rendered in between."""
     use(variant)
-    counts = ["20", "100"] if full else ["8", "24"]
+    counts = ["20", "100"] if full else ["6", "14"]
     done = subprocess.run([sys.executable, "-c", MEMORY, variant, surface, *counts], capture_output=True, text=True,
                           cwd=ROOT)
     assert done.returncode == 0, done.stderr

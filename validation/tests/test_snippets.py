@@ -100,12 +100,12 @@ def test_commands_of_the_readme():
 
 
 def library(ending):
-    """The library as cargo builds it for C, with what a Rust program links too; `cargo xtask c-test` has compiled it."""
+    """What a Rust or a C program links, as `cargo xtask test` has compiled it."""
     cargo = os.environ.get("CARGO", "cargo")
-    messages = run([cargo, "rustc", "-p", "prob-water", "--release", "--features", "c-api", "--crate-type",
-                    "lib,staticlib,cdylib", "--target-dir", "target", "--quiet", "--message-format=json"]).splitlines()
+    messages = run([cargo, "build", "--release", "--workspace", "--exclude", "xtask", "--lib", "--bins", "--tests", "--examples",
+                    "--target-dir", "target", "--quiet", "--message-format=json"]).splitlines()
     artifacts = [m for m in map(json.loads, messages) if m["reason"] == "compiler-artifact" and m["target"]["name"] == "prob_water"]
-    return next(file for file in artifacts[-1]["filenames"] if file.endswith(ending))
+    return next(file for made in artifacts for file in made["filenames"] if file.endswith(ending))
 
 
 def test_rust(tmp_path):

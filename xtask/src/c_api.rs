@@ -68,19 +68,7 @@ pub fn c_test() -> Result<()> {
 
 /// Compiles the C programs with further flags into `target/<directory>`.
 pub fn programs(directory: &str, flags: &[&str]) -> Result<Vec<PathBuf>> {
-    let rust = cargo::static_library(
-        "rust-core",
-        &[
-            "rustc",
-            "-p",
-            "prob-water",
-            "--release",
-            "--features",
-            "c-api",
-            "--crate-type",
-            "lib,staticlib,cdylib",
-        ],
-    )?;
+    let rust = cargo::static_library("c-api", &[&["build"], &cargo::everything()[..]].concat())?;
     let mut sources = Vec::new();
     for directory in PROGRAMS {
         let found = util::files_with_extension(&util::root().join(directory), "c")?;

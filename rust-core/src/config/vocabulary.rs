@@ -469,8 +469,7 @@ pub const ENTRIES: [Entry; 37] = [
         default: "calibrated",
         allowed: "calibrated, ramp, step",
         help: "where on drawn waves whitecaps stand: so that they cover the fraction of Eq. 51 (`calibrated`), or by Eqs. 53-54 of \
-               the drawn waves alone, below w* = 24.9 cm/s with a step at -0.39 g (`ramp`) or at -alpha g (`step`); a table of \
-               the empirical model keeps the one that it was made with, the built-in one `ramp`",
+               the drawn waves alone, below w* = 24.9 cm/s with a step at -0.39 g (`ramp`) or at -alpha g (`step`)",
         surfaces: &DRAWN,
         kind: Kind::Word,
         access: field!(word, whitecap_onset, WHITECAP_ONSETS),

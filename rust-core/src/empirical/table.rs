@@ -272,7 +272,7 @@ pub(crate) struct Slice {
 }
 
 /// Parameters that a table has only one value of.
-pub(crate) const SHARED: [&str; 13] = [
+pub(crate) const SHARED: [&str; 14] = [
     "spectrum",
     "slopes",
     "slope_budget",
@@ -283,6 +283,7 @@ pub(crate) const SHARED: [&str; 13] = [
     "slope_measure",
     "readings",
     "whitecaps",
+    "whitecap_onset",
     "shadowing",
     "hiding",
     "gram_charlier",
@@ -291,19 +292,10 @@ pub(crate) const SHARED: [&str; 13] = [
 /// Those of them that were added later: a file tells them where they are not the defaults.
 pub(crate) const ADDED: [&str; 4] = ["spectrum", "slopes", "slope_budget", "hiding"];
 
-/// What else it was made with: how many points were drawn and which, of which water the reflectance was that its numbers do
-/// not have, and where whitecaps stood.
-pub(crate) const MADE_WITH: [&str; 9] = [
-    "instances",
-    "seed",
-    "wavelength",
-    "ior",
-    "extinction",
-    "temperature",
-    "salinity",
-    "fresnel",
-    "whitecap_onset",
-];
+/// What else it was made with: how many points were drawn and which, and of which water the reflectance was that its numbers do
+/// not have.
+pub(crate) const MADE_WITH: [&str; 8] =
+    ["instances", "seed", "wavelength", "ior", "extinction", "temperature", "salinity", "fresnel"];
 
 /// The parameters that a table tells, by name; the others have no part in it.
 pub(crate) fn kept(value: impl Fn(&str) -> Option<Value>) -> Result<Parameters, Error> {

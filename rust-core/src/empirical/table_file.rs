@@ -155,16 +155,17 @@ fn parse(bytes: &[u8]) -> Result<Table, String> {
     if told("format_version") != FORMAT_VERSION {
         return Err(format!("its format_version is {}, expected {FORMAT_VERSION}", told("format_version")));
     }
-    let parameters = told("parameters");
+    let mut parameters = told("parameters");
+    // Files that do not tell are of Eqs. 53-54 alone.
+    if let Some(told) = parameters.as_object_mut() {
+        told.entry("whitecap_onset").or_insert(json!("ramp"));
+    }
     let untold = |name: &&&str| !ADDED.contains(name) && parameters.get(name).is_none();
     if let Some(missing) = SHARED.iter().find(untold) {
         return Err(format!("its metadata do not tell {missing}"));
     }
     let parameters = kept(|name| {
-        // Files that do not tell are of Eqs. 53-54 alone.
-        let ramp = || (name == "whitecap_onset").then(|| Value::Text("ramp".into()));
-        let Some(told) = parameters.get(name) else { return ramp() };
-        Some(match told {
+        Some(match parameters.get(name)? {
             serde_json::Value::Bool(x) => Value::Flag(*x),
             serde_json::Value::Number(x) => Value::Number(x.as_f64()?),
             serde_json::Value::String(x) => Value::Text(x.clone()),
@@ -236,7 +237,6 @@ mod tests {
     use super::*;
     use crate::config::Surface;
     use crate::empirical::table::Plan;
-    use crate::sea::whitecap::WhitecapOnset;
 
     fn small() -> Table {
         let sea = Parameters {
@@ -317,11 +317,7 @@ mod tests {
     fn the_standard_table_is_what_its_documentation_says() {
         let table = Table::standard();
         assert_eq!(table.grid, Grid::default());
-        let made_with = Parameters {
-            instances: crate::empirical::table::INSTANCES,
-            whitecap_onset: WhitecapOnset::Ramp,
-            ..Parameters::default()
-        };
+        let made_with = Parameters { instances: crate::empirical::table::INSTANCES, ..Parameters::default() };
         let made_with = Plan::new(&made_with, &Grid::default()).unwrap();
         assert!(table.to_bytes() == STANDARD, "written anew the file is another");
         // Of all its rows one that takes little, and one where drawn surfaces matter.

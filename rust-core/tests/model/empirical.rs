@@ -1,10 +1,10 @@
 //! The report's empirical model: its numbers against the full model, and what is made of them.
 
 use crate::common::worse;
+use prob_water::brdf::Parts;
 use prob_water::empirical::{Moments, ReferenceModel};
 use prob_water::planes::Planes;
 use prob_water::table::{Grid, Plan};
-use prob_water::whitecap::WhitecapOnset;
 use prob_water::{
     EmpiricalLobe, Engagement, Ensemble, OffPlaneModel, Parameters, Surface, Table, Water, WhitecapMode, Wind,
 };
@@ -20,8 +20,6 @@ fn sea(w: f64, wind_direction: f64, instances: u64) -> Water {
         footprint: Some(0.15),
         instances,
         ior: Some(1.33),
-        // As the built-in table.
-        whitecap_onset: WhitecapOnset::Ramp,
         ..Parameters::default()
     };
     parameters.configure().unwrap()
@@ -127,6 +125,19 @@ fn nodes_follow_the_ray_cast() {
             count += 1;
         }
         assert!(count >= 2);
+    }
+}
+
+/// The share of whitecaps is Eq. 51's whatever the footprint, as wherever they are calibrated.
+#[test]
+fn whitecaps_cover_the_fraction_at_every_footprint() {
+    for (w, footprint) in [(12.0, 0.02), (24.0, 0.3), (40.0, 0.05), (56.0, 0.15), (62.9, 1.0)] {
+        let water = with(&sea(w, 20.0, 100), |p| p.footprint = Some(footprint));
+        let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
+        let whitecaps = Parts { facets: false, whitecaps: true };
+        let f = lobe.eval_parts([0.0, 0.0, 1.0], [0.28, 0.0, 0.96], whitecaps);
+        let share = f / water.local_lobe().whitecap_brdf;
+        assert!((share / water.whitecap_fraction - 1.0).abs() < 0.01, "{w} {footprint}: {share}");
     }
 }
 
