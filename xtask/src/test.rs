@@ -6,6 +6,9 @@ use crate::{
     build, c_api, cargo, compat, equations, errors, fuzz, parameters, sanitize, setup, stress, tidy, util,
 };
 use anyhow::{Result, bail};
+use std::fs::{self, File};
+use std::process::Child;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 struct Step {
@@ -33,7 +36,7 @@ const STEPS: [Step; 14] = [
     Step { name: "plugin build", run: || plugin_build().map(|()| Passed) },
     Step { name: "pytest", run: || pytest(&[]).map(|()| Passed) },
     Step { name: "cargo fmt", run: cargo_fmt },
-    Step { name: "cargo clippy", run: cargo_clippy },
+    Step { name: "cargo clippy", run: clippy_result },
 ];
 
 /// Runs the steps up to the first that fails.
@@ -58,6 +61,10 @@ pub fn test() -> Result<()> {
         }
     }
 
+    if let Some(mut clippy) = CLIPPY.lock().expect("no step panics").take() {
+        clippy.kill()?;
+    }
+
     println!("\n{:<14} {:>9}  result", "step", "time");
     for (name, result, duration) in &rows {
         println!("{name:<14} {:>9}  {result}", util::seconds(*duration));
@@ -72,9 +79,16 @@ pub fn test() -> Result<()> {
     }
 }
 
+/// Clippy, which runs beside the compiler while that leaves a processor idle.
+static CLIPPY: Mutex<Option<Child>> = Mutex::new(None);
+
+/// What it writes.
+const CLIPPY_LOG: &str = "target/clippy.log";
+
 /// Whatever later steps run, once and together: the library, its tests, the command, the campaigns, the plugin's part of Rust.
-/// Meanwhile the Python packages that later steps need are fetched.
+/// Meanwhile the Python packages that later steps need are fetched, and clippy runs.
 fn compile() -> Result<Outcome> {
+    *CLIPPY.lock().expect("no step panics") = start_clippy()?;
     std::thread::scope(|scope| {
         let setup = scope.spawn(setup::setup);
         util::run(util::cargo().arg("build").args(cargo::everything()), "cargo build")?;
@@ -163,12 +177,27 @@ fn cargo_fmt() -> Result<Outcome> {
     Ok(Passed)
 }
 
-fn cargo_clippy() -> Result<Outcome> {
+fn start_clippy() -> Result<Option<Child>> {
     if !util::succeeds(util::cargo().args(["clippy", "--version"])) {
-        return Ok(Skipped("not installed"));
+        return Ok(None);
     }
+    let log = util::root().join(CLIPPY_LOG);
+    util::create_dir(log.parent().expect("a file lies in a directory"))?;
     let arguments =
         ["clippy", "--quiet", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"];
-    util::run(util::cargo().args(arguments), "cargo clippy")?;
+    let mut command = util::cargo();
+    command.args(arguments).stderr(File::create(&log)?);
+    Ok(Some(command.spawn().map_err(|error| util::not_started(&command, error))?))
+}
+
+fn clippy_result() -> Result<Outcome> {
+    let Some(mut clippy) = CLIPPY.lock().expect("no step panics").take() else {
+        return Ok(Skipped("not installed"));
+    };
+    let status = clippy.wait()?;
+    print!("{}", fs::read_to_string(util::root().join(CLIPPY_LOG))?);
+    if !status.success() {
+        bail!("cargo clippy failed ({status})");
+    }
     Ok(Passed)
 }
