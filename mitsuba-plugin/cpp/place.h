@@ -12,6 +12,8 @@ namespace prob_water {
 struct Request {
     bool facets, whitecaps, water_leaving, to_light;
     uint32_t parts() const { return (facets ? 1u : 0u) | (whitecaps ? 2u : 0u); }
+    Request facets_alone() const { return { facets, false, false, to_light }; }
+    Request whitecaps_alone() const { return { false, whitecaps, false, to_light }; }
     bool surface() const { return facets || whitecaps; }
     bool none() const { return !surface() && !water_leaving; }
 };
@@ -38,7 +40,10 @@ template <typename Float> struct TracedPlace {
     bool ordered;
     Inputs<Float> inputs;
 
-    Float eval(Request r, const Vector3f &wi, const Vector3f &wo) const { return value(Kernel::Eval, r, wi, wo); }
+    /// By Kernel::Eval or Kernel::Weight.
+    Float eval(Request r, const Vector3f &wi, const Vector3f &wo, Kernel kernel = Kernel::Eval) const {
+        return value(kernel, r, wi, wo);
+    }
 
     Float pdf(Request r, const Vector3f &wi, const Vector3f &wo) const { return run(Kernel::Pdf, r, wi, wo)[0]; }
 
@@ -51,10 +56,21 @@ template <typename Float> struct TracedPlace {
         return { wo, value(Kernel::Weight, r, wi, wo), pdf(r, wi, wo), drawn[3] > 0.f };
     }
 
-    /// f cos(theta_o) of light from below for a reflectance of 1, and the density of draws by cosine.
-    std::pair<Float, Float> water_leaving(const Vector3f &wi, const Vector3f &wo) const {
-        auto found = run(Kernel::WaterLeaving, {}, wi, wo);
+    /// f cos(theta_o) of light from below for a reflectance of 1, and the density of draws by cosine. The index is that of a lane.
+    std::pair<Float, Float> water_leaving(const Vector3f &wi, const Vector3f &wo, const Float &index) const {
+        auto found = run(Kernel::WaterLeaving, {}, wi, wo, 0.f, index);
         return { found[0], found[1] };
+    }
+
+    /// m01, m22 and m23 of the facets' Mueller matrix over m00.
+    Vector3f polarisation(const Vector3f &wi, const Vector3f &wo, const Float &index) const {
+        auto found = run(Kernel::Polarisation, {}, wi, wo, 0.f, index);
+        return { found[0], found[1], found[2] };
+    }
+
+    /// The facets' reflectance for the index of a lane over the sea's.
+    Float lane_reflectance(const Vector3f &wi, const Vector3f &wo, const Float &index) const {
+        return run(Kernel::LaneReflectance, {}, wi, wo, 0.f, index)[0];
     }
 
     Float water_leaving_share(Request r, const Vector3f &wi, const Float &reflectance) const {
@@ -77,8 +93,10 @@ private:
         return run(kernel, r, turned ? wo : wi, turned ? wi : wo, wo.z())[0];
     }
 
-    std::vector<Float> run(Kernel kernel, Request r, const Vector3f &i, const Vector3f &o, const Float &cos = 0.f) const {
+    std::vector<Float> run(Kernel kernel, Request r, const Vector3f &i, const Vector3f &o, const Float &cos = 0.f,
+                           const Float &index = 0.f) const {
         Inputs<Float> in = inputs;
+        in.set(Input::Index, index);
         in.set(Input::Source, i);
         in.set(Input::Observer, o);
         in.set(Input::Cosine, cos);
@@ -110,6 +128,14 @@ template <typename Float_> struct TracedSea {
     }
 
     DRJIT_STRUCT(TracedSea, replay, waves)
+
+    /// The index at a wavelength in nm, and the whitecaps' BRDF over the sea's.
+    std::pair<Float, Float> lane(const Float &wavelength) const {
+        Inputs<Float> in;
+        in.set(Input::Wavelength, wavelength);
+        auto found = replay.run(Kernel::Lane, 0, in);
+        return { found[0], found[1] };
+    }
 
     Place at(const Where<Float> &where) const {
         Place place{ replay, traits.ordered, {} };
@@ -160,6 +186,9 @@ static_assert(sizeof(ProbWaterSample) == 24 && sizeof(Where<float>) == 24, "as t
 struct ProbWaterPair {
     float first, second;
 };
+struct ProbWaterTriple {
+    float m01, m22, m23;
+};
 struct ProbWaterLocal {
     alignas(16) unsigned char bytes[256];
 };
@@ -167,7 +196,10 @@ void prob_water_place(const Water *, const Where<float> *, ProbWaterLocal *);
 float prob_water_place_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
 float prob_water_place_pdf(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o);
 ProbWaterSample prob_water_place_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
-ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o);
+ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o, float index);
+ProbWaterTriple prob_water_place_polarisation(const ProbWaterLocal *, const float *i, const float *o, float index);
+float prob_water_place_lane_reflectance(const ProbWaterLocal *, const float *i, const float *o, float index);
+ProbWaterPair prob_water_lane(const Water *, float wavelength);
 float prob_water_place_water_leaving_share(const ProbWaterLocal *, uint32_t parts, const float *i, float reflectance);
 ProbWaterPair prob_water_place_diffuse(const ProbWaterLocal *);
 }
@@ -178,7 +210,7 @@ template <typename Float> struct ScalarPlace {
 
     ProbWaterLocal local;
 
-    Float eval(Request r, const Vector3f &i, const Vector3f &o) const {
+    Float eval(Request r, const Vector3f &i, const Vector3f &o, Kernel = Kernel::Eval) const {
         return prob_water_place_eval(&local, r.parts(), i.data(), o.data(), r.to_light);
     }
     Float pdf(Request r, const Vector3f &i, const Vector3f &o) const {
@@ -188,9 +220,16 @@ template <typename Float> struct ScalarPlace {
         ProbWaterSample s = prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light);
         return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, s.pdf, s.whitecap };
     }
-    Pair water_leaving(const Vector3f &i, const Vector3f &o) const {
-        ProbWaterPair found = prob_water_place_water_leaving(&local, i.data(), o.data());
+    Pair water_leaving(const Vector3f &i, const Vector3f &o, Float index) const {
+        ProbWaterPair found = prob_water_place_water_leaving(&local, i.data(), o.data(), index);
         return { found.first, found.second };
+    }
+    Vector3f polarisation(const Vector3f &i, const Vector3f &o, Float index) const {
+        ProbWaterTriple found = prob_water_place_polarisation(&local, i.data(), o.data(), index);
+        return { found.m01, found.m22, found.m23 };
+    }
+    Float lane_reflectance(const Vector3f &i, const Vector3f &o, Float index) const {
+        return prob_water_place_lane_reflectance(&local, i.data(), o.data(), index);
     }
     Float water_leaving_share(Request r, const Vector3f &i, Float reflectance) const {
         return prob_water_place_water_leaving_share(&local, r.parts(), i.data(), reflectance);
@@ -208,6 +247,11 @@ template <typename Float> struct ScalarSea {
 
     ScalarSea() = default;
     explicit ScalarSea(const Water &water) : water(&water) {}
+
+    std::pair<Float, Float> lane(Float wavelength) const {
+        ProbWaterPair found = prob_water_lane(water, wavelength);
+        return { found.first, found.second };
+    }
 
     Place at(const Where<Float> &where) const {
         Place place;

@@ -4,7 +4,7 @@
 use crate::parts;
 use crate::water::{Water, Waves};
 use prob_water::brdf::Parts;
-use prob_water::{Lobe, Sample};
+use prob_water::{Lobe, Reflectance, Sample};
 use std::mem::MaybeUninit;
 
 /// What a place has of its own.
@@ -32,6 +32,10 @@ const _: () = assert!(size_of::<Local>() <= 256 && align_of::<Local>() <= 16);
 /// Two numbers.
 #[repr(C)]
 pub struct Pair(f32, f32);
+
+/// Three numbers.
+#[repr(C)]
+pub struct Triple(f32, f32, f32);
 
 impl Water {
     fn local(&self, place: &Place) -> Local<'_> {
@@ -81,6 +85,14 @@ impl Water {
 impl Local<'_> {
     fn lobe(&self) -> &Lobe<f32> {
         self.own.as_ref().map_or(&self.water.lobe, |(lobe, _)| lobe)
+    }
+
+    /// For the index of a lane, where lanes differ.
+    fn reflectance(&self, index: f32) -> Reflectance<f64> {
+        match &self.water.single_dispersion {
+            Some(dispersion) => dispersion.reflectance(index),
+            None => self.lobe().facets.reflectance,
+        }
     }
 }
 
@@ -135,11 +147,51 @@ pub extern "C" fn prob_water_place_sample(
     sample
 }
 
-/// The value of light from below for a reflectance of 1, and the density of draws by cosine.
+/// The value of light from below for a reflectance of 1 and the index of a lane, where lanes differ, and the density of draws by
+/// cosine.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_place_water_leaving(local: &Local, i: &[f32; 3], o: &[f32; 3]) -> Pair {
-    let [value, density] = local.lobe().water_leaving(*i, *o);
+pub extern "C" fn prob_water_place_water_leaving(
+    local: &Local,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    index: f32,
+) -> Pair {
+    let mut lobe = *local.lobe();
+    lobe.facets.reflectance = local.reflectance(index);
+    let [value, density] = lobe.water_leaving(*i, *o);
     Pair(value, density)
+}
+
+/// m01, m22 and m23 of the facets' Mueller matrix over m00.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_place_polarisation(
+    local: &Local,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    index: f32,
+) -> Triple {
+    let [m01, m22, m23] =
+        local.reflectance(index).polarised_between(i.map(f64::from), o.map(f64::from)).map(|m| m as f32);
+    Triple(m01, m22, m23)
+}
+
+/// The index at a wavelength in nm, and the whitecaps' BRDF over the sea's.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_lane(water: &Water, wavelength: f32) -> Pair {
+    let [index, whitecaps] =
+        water.single_dispersion.as_ref().map_or([f32::NAN, 1.0], |dispersion| dispersion.at(wavelength));
+    Pair(index, whitecaps)
+}
+
+/// The facets' reflectance for the index of a lane over the sea's.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_place_lane_reflectance(
+    local: &Local,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    index: f32,
+) -> f32 {
+    local.water.single_dispersion.as_ref().map_or(1.0, |dispersion| dispersion.ratio(index, *i, *o))
 }
 
 /// The share of draws for the light from below.
