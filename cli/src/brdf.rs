@@ -125,7 +125,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
         let known = estimates.get(row).map(|e| [Cell::Number(e.std), Cell::Count(e.outside.into())]);
         let [i, o] = [0, 1].map(|k| directions.vectors[k][row]);
         let matrix = foam.get(row).map(|foam| polarised::mueller(&reflectance, i, o, [f - foam, *foam]));
-        let matrix = matrix.iter().flatten().flatten().map(|m| Cell::Number(*m));
+        let matrix = matrix.iter().flatten().flatten().map(|m| Cell::Number(m + 0.0));
         let cells = given.chain([Cell::Number(*f)]).chain(known.into_iter().flatten()).chain(matrix);
         out.row(&cells.collect::<Vec<_>>())?;
         if row % STRIDE == 0 {

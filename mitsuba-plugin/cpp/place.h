@@ -12,8 +12,6 @@ namespace prob_water {
 struct Request {
     bool facets, whitecaps, water_leaving, to_light;
     uint32_t parts() const { return (facets ? 1u : 0u) | (whitecaps ? 2u : 0u); }
-    Request facets_alone() const { return { facets, false, false, to_light }; }
-    Request whitecaps_alone() const { return { false, whitecaps, false, to_light }; }
     bool surface() const { return facets || whitecaps; }
     bool none() const { return !surface() && !water_leaving; }
 };
@@ -28,9 +26,9 @@ template <typename Float> struct Where {
 
 template <typename Float> struct Draw {
     mitsuba::Vector<Float, 3> wo;
-    /// f cos(theta_o) and density, 1/sr.
-    Float value, pdf;
-    drjit::mask_t<Float> whitecap;
+    /// f cos(theta_o) and density, 1/sr; where they are told apart, of facets, and that of whitecaps.
+    Float value, whitecaps, pdf;
+    drjit::mask_t<Float> from_whitecap;
 };
 
 template <typename Float> struct TracedPlace {
@@ -40,20 +38,25 @@ template <typename Float> struct TracedPlace {
     bool ordered;
     Inputs<Float> inputs;
 
-    /// By Kernel::Eval or Kernel::Weight.
-    Float eval(Request r, const Vector3f &wi, const Vector3f &wo, Kernel kernel = Kernel::Eval) const {
-        return value(kernel, r, wi, wo);
+    Float eval(Request r, const Vector3f &wi, const Vector3f &wo) const { return value(Kernel::Eval, r, wi, wo); }
+
+    /// The same of facets and of whitecaps.
+    std::pair<Float, Float> eval_apart(Request r, const Vector3f &wi, const Vector3f &wo, Kernel kernel = Kernel::Eval) const {
+        Request facets{ true, false, false, r.to_light }, whitecaps{ false, true, false, r.to_light };
+        return { r.facets ? value(kernel, facets, wi, wo) : Float(0.f), r.whitecaps ? value(kernel, whitecaps, wi, wo) : Float(0.f) };
     }
 
     Float pdf(Request r, const Vector3f &wi, const Vector3f &wo) const { return run(Kernel::Pdf, r, wi, wo)[0]; }
 
-    Draw<Float> sample(Request r, const Vector3f &wi, const Vector3f &u) const {
+    Draw<Float> sample(Request r, const Vector3f &wi, const Vector3f &u, bool apart) const {
         Inputs<Float> in = inputs;
         in.set(Input::Source, wi);
         in.set(Input::Random, u);
         auto drawn = replay.run(Kernel::Draw, r.parts(), in);
         Vector3f wo(drawn[0], drawn[1], drawn[2]);
-        return { wo, value(Kernel::Weight, r, wi, wo), pdf(r, wi, wo), drawn[3] > 0.f };
+        auto [first, second] =
+            apart ? eval_apart(r, wi, wo, Kernel::Weight) : std::pair(value(Kernel::Weight, r, wi, wo), Float(0.f));
+        return { wo, first, second, pdf(r, wi, wo), drawn[3] > 0.f };
     }
 
     /// f cos(theta_o) of light from below for a reflectance of 1, and the density of draws by cosine. The index is that of a lane.
@@ -189,6 +192,10 @@ struct ProbWaterPair {
 struct ProbWaterTriple {
     float m01, m22, m23;
 };
+struct ProbWaterApart {
+    ProbWaterSample sample;
+    float whitecaps;
+};
 struct ProbWaterLocal {
     alignas(16) unsigned char bytes[256];
 };
@@ -196,6 +203,8 @@ void prob_water_place(const Water *, const Where<float> *, ProbWaterLocal *);
 float prob_water_place_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
 float prob_water_place_pdf(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o);
 ProbWaterSample prob_water_place_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
+ProbWaterPair prob_water_place_eval_apart(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
+ProbWaterApart prob_water_place_sample_apart(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
 ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o, float index);
 ProbWaterTriple prob_water_place_polarisation(const ProbWaterLocal *, const float *i, const float *o, float index);
 float prob_water_place_lane_reflectance(const ProbWaterLocal *, const float *i, const float *o, float index);
@@ -210,15 +219,20 @@ template <typename Float> struct ScalarPlace {
 
     ProbWaterLocal local;
 
-    Float eval(Request r, const Vector3f &i, const Vector3f &o, Kernel = Kernel::Eval) const {
+    Float eval(Request r, const Vector3f &i, const Vector3f &o) const {
         return prob_water_place_eval(&local, r.parts(), i.data(), o.data(), r.to_light);
+    }
+    Pair eval_apart(Request r, const Vector3f &i, const Vector3f &o) const {
+        ProbWaterPair found = prob_water_place_eval_apart(&local, r.parts(), i.data(), o.data(), r.to_light);
+        return { found.first, found.second };
     }
     Float pdf(Request r, const Vector3f &i, const Vector3f &o) const {
         return prob_water_place_pdf(&local, r.parts(), i.data(), o.data());
     }
-    Draw<Float> sample(Request r, const Vector3f &i, const Vector3f &u) const {
-        ProbWaterSample s = prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light);
-        return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, s.pdf, s.whitecap };
+    Draw<Float> sample(Request r, const Vector3f &i, const Vector3f &u, bool apart) const {
+        auto [s, whitecaps] = apart ? prob_water_place_sample_apart(&local, r.parts(), i.data(), u.data(), r.to_light)
+                                    : ProbWaterApart{ prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light), 0.f };
+        return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, whitecaps, s.pdf, s.whitecap };
     }
     Pair water_leaving(const Vector3f &i, const Vector3f &o, Float index) const {
         ProbWaterPair found = prob_water_place_water_leaving(&local, i.data(), o.data(), index);

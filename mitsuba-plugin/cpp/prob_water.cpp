@@ -30,7 +30,6 @@ public:
     using Request = prob_water::Request;
     using Sea = prob_water::Sea<Float>;
     using Place = typename Sea::Place;
-    using Kernel = prob_water::Kernel;
 
     static constexpr prob_water::Variant variant{ dr::is_jit_v<Float>, is_polarized_v<Spectrum>, is_spectral_v<Spectrum> };
 
@@ -373,17 +372,21 @@ private:
     /// Whether facets and whitecaps differ by more than their number: in polarisation or between lanes.
     bool apart() const { return is_polarized_v<Spectrum> || m_traits.lanes; }
 
-    /// f cos(theta_o), 1/sr, of light as the variant has it.
-    Spectrum value(const Local &at, const Vector3f &wo, Kernel kernel = Kernel::Eval) const {
-        UnpolarizedSpectrum facets = 0.f, diffuse = 0.f;
-        if (!apart() && at.on.surface())
-            facets = at.place.eval(at.on, at.wi, wo, kernel);
-        if (apart() && at.on.facets)
-            facets = at.place.eval(at.on.facets_alone(), at.wi, wo, kernel);
-        if (at.on.facets && m_traits.lanes)
+    /// f cos(theta_o), 1/sr.
+    Spectrum value(const Local &at, const Vector3f &wo) const {
+        std::pair<Float, Float> surface(0.f, 0.f);
+        if (at.on.surface() && apart())
+            surface = at.place.eval_apart(at.on, at.wi, wo);
+        else if (at.on.surface())
+            surface.first = at.place.eval(at.on, at.wi, wo);
+        return light(at, wo, surface.first, surface.second);
+    }
+
+    /// The same, for what facets and whitecaps reflect of light without polarisation at the sea's own wavelength.
+    Spectrum light(const Local &at, const Vector3f &wo, UnpolarizedSpectrum facets, const Float &whitecaps) const {
+        UnpolarizedSpectrum diffuse = at.whitecaps * whitecaps;
+        if (m_traits.lanes && at.on.facets)
             facets *= by_lane(at, [&](const Float &n) { return at.place.lane_reflectance(at.wi, wo, n); });
-        if (apart() && at.on.whitecaps)
-            diffuse = at.place.eval(at.on.whitecaps_alone(), at.wi, wo, kernel) * at.whitecaps;
         if (at.on.water_leaving)
             diffuse += at.reflectance * by_lane(at, [&](const Float &n) { return at.place.water_leaving(at.wi, wo, n).first; });
         if constexpr (is_polarized_v<Spectrum>)
@@ -426,11 +429,12 @@ private:
             sample1 = dr::select(below, 0.f, prob_water::smaller(rest, dr::OneMinusEpsilon<Float>));
         }
         if (at.on.surface() && !dr::all_or<false>(below)) {
-            auto drawn = at.place.sample(at.on, at.wi, { sample1, sample2.x(), sample2.y() });
+            auto drawn = at.place.sample(at.on, at.wi, { sample1, sample2.x(), sample2.y() }, apart());
             bs.wo = drawn.wo;
             bs.pdf = drawn.pdf;
-            f_cos = apart() ? value(at, bs.wo, Kernel::Weight) : depolarizer<Spectrum>(drawn.value);
-            diffuse = drawn.whitecap;
+            diffuse = drawn.from_whitecap;
+            if (!at.on.water_leaving)
+                f_cos = light(at, drawn.wo, drawn.value, drawn.whitecaps);
         }
         if (at.on.water_leaving) {
             bs.wo = dr::select(below, warp::square_to_cosine_hemisphere(sample2), bs.wo);

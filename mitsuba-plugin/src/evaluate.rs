@@ -82,7 +82,38 @@ impl Water {
     }
 }
 
+/// A draw whose value is the facets', and the value of the whitecaps.
+#[repr(C)]
+pub struct Apart(Sample<f32>, f32);
+
+const FACETS: Parts = Parts { facets: true, whitecaps: false };
+const WHITECAPS: Parts = Parts { facets: false, whitecaps: true };
+
 impl Local<'_> {
+    fn eval(&self, i: [f32; 3], o: [f32; 3], parts: Parts, to_light: bool) -> f32 {
+        match &self.own {
+            Some((lobe, normal)) => lobe.on_wave(i, o, *normal, parts),
+            None => self.water.eval(i, o, parts, to_light),
+        }
+    }
+
+    /// The value of whitecaps, as far as they take part.
+    fn whitecaps(&self, i: [f32; 3], o: [f32; 3], parts: Parts, to_light: bool) -> f32 {
+        if parts.whitecaps { self.eval(i, o, WHITECAPS, to_light) } else { 0.0 }
+    }
+
+    fn sample(&self, i: [f32; 3], u: [f32; 3], parts: Parts, to_light: bool) -> Sample<f32> {
+        let Some((lobe, normal)) = &self.own else {
+            return self.water.sample(i, u, parts, to_light);
+        };
+        let mut sample = lobe.sample_parts(i, *normal, u, parts);
+        if sample.direction[2] <= 0.0 {
+            sample.pdf = 0.0;
+        }
+        sample.f = lobe.on_wave(i, sample.direction, *normal, parts);
+        sample
+    }
+
     fn lobe(&self) -> &Lobe<f32> {
         self.own.as_ref().map_or(&self.water.lobe, |(lobe, _)| lobe)
     }
@@ -111,10 +142,21 @@ pub extern "C" fn prob_water_place_eval(
     o: &[f32; 3],
     to_light: bool,
 ) -> f32 {
-    match &local.own {
-        Some((lobe, normal)) => lobe.on_wave(*i, *o, *normal, parts(bits)),
-        None => local.water.eval(*i, *o, parts(bits), to_light),
-    }
+    local.eval(*i, *o, parts(bits), to_light)
+}
+
+/// The values of facets and whitecaps.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_place_eval_apart(
+    local: &Local,
+    bits: u32,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    to_light: bool,
+) -> Pair {
+    let parts = parts(bits);
+    let facets = if parts.facets { local.eval(*i, *o, FACETS, to_light) } else { 0.0 };
+    Pair(facets, local.whitecaps(*i, *o, parts, to_light))
 }
 
 /// Density, 1/sr, with which [`prob_water_place_sample`] draws `o`.
@@ -136,15 +178,23 @@ pub extern "C" fn prob_water_place_sample(
     u: &[f32; 3],
     to_light: bool,
 ) -> Sample<f32> {
-    let Some((lobe, normal)) = &local.own else {
-        return local.water.sample(*i, *u, parts(bits), to_light);
-    };
-    let mut sample = lobe.sample_parts(*i, *normal, *u, parts(bits));
-    if sample.direction[2] <= 0.0 {
-        sample.pdf = 0.0;
-    }
-    sample.f = lobe.on_wave(*i, sample.direction, *normal, parts(bits));
-    sample
+    local.sample(*i, *u, parts(bits), to_light)
+}
+
+/// The same, with the values of facets and whitecaps.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_place_sample_apart(
+    local: &Local,
+    bits: u32,
+    i: &[f32; 3],
+    u: &[f32; 3],
+    to_light: bool,
+) -> Apart {
+    let parts = parts(bits);
+    let mut sample = local.sample(*i, *u, parts, to_light);
+    let whitecaps = local.whitecaps(*i, sample.direction, parts, to_light);
+    sample.f = if parts.facets { (sample.f - whitecaps).max(0.0) } else { 0.0 };
+    Apart(sample, whitecaps)
 }
 
 /// The value of light from below for a reflectance of 1 and the index of a lane, where lanes differ, and the density of draws by

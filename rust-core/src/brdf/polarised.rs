@@ -40,7 +40,7 @@ impl<T: Real> Reflectance<T> {
         let (s4, c2q2) = (s2 * s2, c2 * norm);
         let over = T::max(s4 + c2q2, T::TINY).recip();
         let twice = two * s2 * cos * over;
-        [twice * real.sqrt(), (s4 - c2q2) * over, twice * imaginary]
+        [twice * real.sqrt(), (s4 - c2q2) * over, zero - twice * imaginary]
     }
 }
 
@@ -191,7 +191,7 @@ mod tests {
         [s * cp, s * sp, c]
     }
 
-    /// Eradiate's ocean_mishchenko (f cos theta_o, in frames with the meridian's axis first), all digits that are printed: isotropic
+    /// Eradiate's ocean_mishchenko (f times the light's cosine, in frames with the meridian's axis first), all digits that are printed: isotropic
     /// facets of the mean square slope 0.003 + 0.00512 W, shadowed by 1/(1 + L_i + L_o). Its lobe in a line, our matrix.
     #[test]
     fn printed_matrices() {
@@ -212,7 +212,7 @@ mod tests {
                 crate::brdf::shadowing::cos_lambda(v[2], std::f64::consts::SQRT_2 * sigma_sin) / v[2]
             };
             let f_cos =
-                density * reflectance.eval(0.5 * length) / (1.0 + hidden(i) + hidden(o)) / (4.0 * i[2]);
+                density * reflectance.eval(0.5 * length) / (1.0 + hidden(i) + hidden(o)) / (4.0 * o[2]);
             let m = mueller(&reflectance, i, o, [f_cos, 0.0]);
             let found = [[m[0][0], m[1][1]], [m[0][1], m[1][0]], [m[2][2], m[3][3]]];
             println!("W {wind}: {:.7} {:.7} {:.7}", m[0][0], m[0][1], m[2][2]);

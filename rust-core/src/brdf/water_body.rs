@@ -17,7 +17,7 @@ pub const MOST_CHLOROPHYLL: f64 = 30.0;
 /// `R = 0.33 b_b/(u K)` with `K = k_w + chi C^e`, `b_b = b_w/2 + (0.002 + 0.02 (1/2 - log10(C)/4) 550/l) 0.30 C^0.62` and
 /// `u = 0.90 (1 - R)/(1 + 2.25 R)`; molecules scatter by `b_w = 0.00288 (l/500)^-4.32` (Morel 1974).
 pub fn case_1_reflectance(wavelength: f64, chlorophyll: f64) -> f64 {
-    if wavelength > CASE_1[1] {
+    if wavelength > CASE_1[1] * (1.0 + f64::EPSILON) {
         return 0.0;
     }
     let nm = 1e3 * wavelength.max(CASE_1[0]);
