@@ -5,6 +5,8 @@
 
 #include "replay.h"
 #include <drjit/while_loop.h>
+#include <algorithm>
+#include <array>
 
 namespace prob_water {
 
@@ -71,9 +73,12 @@ template <typename Float> struct TracedPlace {
         return { found[0], found[1], found[2] };
     }
 
-    /// The facets' reflectance for the index of a lane over the sea's.
-    Float lane_reflectance(const Vector3f &wi, const Vector3f &wo, const Float &index) const {
-        return run(Kernel::LaneReflectance, {}, wi, wo, 0.f, index)[0];
+    /// The facets' reflectance for the indices of lanes over the sea's.
+    template <typename Lanes> Lanes lane_reflectances(const Vector3f &wi, const Vector3f &wo, const Lanes &index) const {
+        Lanes ratios;
+        for (size_t k = 0; k < Lanes::Size; ++k)
+            ratios[k] = run(Kernel::LaneReflectance, {}, wi, wo, 0.f, index[k])[0];
+        return ratios;
     }
 
     Float water_leaving_share(Request r, const Vector3f &wi, const Float &reflectance) const {
@@ -132,12 +137,17 @@ template <typename Float_> struct TracedSea {
 
     DRJIT_STRUCT(TracedSea, replay, waves)
 
-    /// The index at a wavelength in nm, and the whitecaps' BRDF over the sea's.
-    std::pair<Float, Float> lane(const Float &wavelength) const {
-        Inputs<Float> in;
-        in.set(Input::Wavelength, wavelength);
-        auto found = replay.run(Kernel::Lane, 0, in);
-        return { found[0], found[1] };
+    /// The indices at wavelengths in nm, and the whitecaps' BRDF over the sea's.
+    template <typename Lanes> std::pair<Lanes, Lanes> lanes(const Lanes &wavelengths) const {
+        std::pair<Lanes, Lanes> all;
+        for (size_t k = 0; k < Lanes::Size; ++k) {
+            Inputs<Float> in;
+            in.set(Input::Wavelength, wavelengths[k]);
+            auto found = replay.run(Kernel::Lane, 0, in);
+            all.first[k] = found[0];
+            all.second[k] = found[1];
+        }
+        return all;
     }
 
     Place at(const Where<Float> &where) const {
@@ -192,6 +202,9 @@ struct ProbWaterPair {
 struct ProbWaterTriple {
     float m01, m22, m23;
 };
+struct ProbWaterLanes {
+    float first[4], second[4];
+};
 struct ProbWaterApart {
     ProbWaterSample sample;
     float whitecaps;
@@ -207,8 +220,8 @@ ProbWaterPair prob_water_place_eval_apart(const ProbWaterLocal *, uint32_t parts
 ProbWaterApart prob_water_place_sample_apart(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
 ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o, float index);
 ProbWaterTriple prob_water_place_polarisation(const ProbWaterLocal *, const float *i, const float *o, float index);
-float prob_water_place_lane_reflectance(const ProbWaterLocal *, const float *i, const float *o, float index);
-ProbWaterPair prob_water_lane(const Water *, float wavelength);
+ProbWaterLanes prob_water_place_lane_reflectances(const ProbWaterLocal *, const float *i, const float *o, const float *indices);
+ProbWaterLanes prob_water_lanes(const Water *, const float *wavelengths);
 float prob_water_place_water_leaving_share(const ProbWaterLocal *, uint32_t parts, const float *i, float reflectance);
 ProbWaterPair prob_water_place_diffuse(const ProbWaterLocal *);
 }
@@ -242,8 +255,17 @@ template <typename Float> struct ScalarPlace {
         ProbWaterTriple found = prob_water_place_polarisation(&local, i.data(), o.data(), index);
         return { found.m01, found.m22, found.m23 };
     }
-    Float lane_reflectance(const Vector3f &i, const Vector3f &o, Float index) const {
-        return prob_water_place_lane_reflectance(&local, i.data(), o.data(), index);
+    template <typename Lanes> Lanes lane_reflectances(const Vector3f &i, const Vector3f &o, const Lanes &index) const {
+        ProbWaterLanes found = prob_water_place_lane_reflectances(&local, i.data(), o.data(), four(index).data());
+        return drjit::load<Lanes>(found.first);
+    }
+
+    /// As the core takes them.
+    template <typename Lanes> static std::array<float, 4> four(const Lanes &lanes) {
+        static_assert(Lanes::Size <= 4, "as many lanes as the core takes");
+        std::array<float, 4> all{};
+        std::copy_n(lanes.data(), Lanes::Size, all.begin());
+        return all;
     }
     Float water_leaving_share(Request r, const Vector3f &i, Float reflectance) const {
         return prob_water_place_water_leaving_share(&local, r.parts(), i.data(), reflectance);
@@ -262,9 +284,9 @@ template <typename Float> struct ScalarSea {
     ScalarSea() = default;
     explicit ScalarSea(const Water &water) : water(&water) {}
 
-    std::pair<Float, Float> lane(Float wavelength) const {
-        ProbWaterPair found = prob_water_lane(water, wavelength);
-        return { found.first, found.second };
+    template <typename Lanes> std::pair<Lanes, Lanes> lanes(const Lanes &wavelengths) const {
+        ProbWaterLanes found = prob_water_lanes(water, Place::four(wavelengths).data());
+        return { drjit::load<Lanes>(found.first), drjit::load<Lanes>(found.second) };
     }
 
     Place at(const Where<Float> &where) const {

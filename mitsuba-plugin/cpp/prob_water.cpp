@@ -324,8 +324,7 @@ private:
     std::pair<UnpolarizedSpectrum, UnpolarizedSpectrum> lanes(const SurfaceInteraction3f &si, Mask active) const {
         UnpolarizedSpectrum index = 0.f, whitecaps = 1.f;
         if constexpr (is_spectral_v<Spectrum>)
-            for (size_t k = 0; k < dr::size_v<UnpolarizedSpectrum>; ++k)
-                std::tie(index[k], whitecaps[k]) = m_sea.lane(si.wavelengths[k]);
+            std::tie(index, whitecaps) = m_sea.lanes(UnpolarizedSpectrum(si.wavelengths));
         if (m_ior)
             index = prob_water::larger(m_ior->eval(si, active), 1.f);
         return { index, whitecaps };
@@ -386,7 +385,7 @@ private:
     Spectrum light(const Local &at, const Vector3f &wo, UnpolarizedSpectrum facets, const Float &whitecaps) const {
         UnpolarizedSpectrum diffuse = at.whitecaps * whitecaps;
         if (m_traits.lanes && at.on.facets)
-            facets *= by_lane(at, [&](const Float &n) { return at.place.lane_reflectance(at.wi, wo, n); });
+            facets *= at.place.lane_reflectances(at.wi, wo, at.index);
         if (at.on.water_leaving)
             diffuse += at.reflectance * by_lane(at, [&](const Float &n) { return at.place.water_leaving(at.wi, wo, n).first; });
         if constexpr (is_polarized_v<Spectrum>)

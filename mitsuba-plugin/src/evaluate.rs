@@ -225,23 +225,33 @@ pub extern "C" fn prob_water_place_polarisation(
     Triple(m01, m22, m23)
 }
 
-/// The index at a wavelength in nm, and the whitecaps' BRDF over the sea's.
+/// What differs between lanes, four at most.
+#[repr(C)]
+pub struct Lanes([f32; 4], [f32; 4]);
+
+/// The indices at wavelengths in nm, and the whitecaps' BRDF over the sea's.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_lane(water: &Water, wavelength: f32) -> Pair {
-    let [index, whitecaps] =
-        water.single_dispersion.as_ref().map_or([f32::NAN, 1.0], |dispersion| dispersion.at(wavelength));
-    Pair(index, whitecaps)
+pub extern "C" fn prob_water_lanes(water: &Water, wavelengths: &[f32; 4]) -> Lanes {
+    let lanes = match &water.single_dispersion {
+        Some(dispersion) => wavelengths.map(|wavelength| dispersion.at(wavelength)),
+        None => [[f32::NAN, 1.0]; 4],
+    };
+    Lanes(lanes.map(|[index, _]| index), lanes.map(|[_, whitecaps]| whitecaps))
 }
 
-/// The facets' reflectance for the index of a lane over the sea's.
+/// The facets' reflectance for the indices of lanes over the sea's.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_place_lane_reflectance(
+pub extern "C" fn prob_water_place_lane_reflectances(
     local: &Local,
     i: &[f32; 3],
     o: &[f32; 3],
-    index: f32,
-) -> f32 {
-    local.water.single_dispersion.as_ref().map_or(1.0, |dispersion| dispersion.ratio(index, *i, *o))
+    indices: &[f32; 4],
+) -> Lanes {
+    let ratios = match &local.water.single_dispersion {
+        Some(dispersion) => dispersion.ratios(*indices, *i, *o),
+        None => [1.0; 4],
+    };
+    Lanes(ratios, [1.0; 4])
 }
 
 /// The share of draws for the light from below.

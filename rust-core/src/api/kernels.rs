@@ -310,7 +310,7 @@ impl Sea {
                 None => vec![],
             },
             Kernel::LaneReflectance => match &self.dispersion {
-                Some(dispersion) => vec![dispersion.ratio(x.number(inputs::INDEX), i, o)],
+                Some(dispersion) => dispersion.ratios([x.number(inputs::INDEX)], i, o).to_vec(),
                 None => vec![],
             },
         }

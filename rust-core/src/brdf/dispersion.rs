@@ -68,12 +68,12 @@ impl<T: Tabulated> Dispersion<T> {
         Reflectance::of_index(n.to_density(), k, self.base.exact)
     }
 
-    /// rho for an index n over the lobe's, between two directions.
+    /// rho for indices n over the lobe's, between two directions.
     #[inline(always)]
-    pub fn ratio(&self, n: T, i: Vec3<T>, o: Vec3<T>) -> T {
+    pub fn ratios<const N: usize>(&self, n: [T; N], i: Vec3<T>, o: Vec3<T>) -> [T; N] {
         let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
         let cos = T::min(T::of(0.5) * dot(h, h).sqrt(), T::of(1.0)).to_density();
-        let base = T::Density::max(self.base.eval(cos), T::Density::TINY);
-        T::from_density(self.reflectance(n).eval(cos) / base)
+        let over = T::Density::max(self.base.eval(cos), T::Density::TINY).recip();
+        n.map(|n| T::from_density(self.reflectance(n).eval(cos) * over))
     }
 }
