@@ -5,8 +5,6 @@
 
 #include "replay.h"
 #include <drjit/while_loop.h>
-#include <algorithm>
-#include <array>
 
 namespace prob_water {
 
@@ -40,10 +38,10 @@ template <typename Float> struct TracedPlace {
     bool ordered;
     Inputs<Float> inputs;
 
-    Float eval(Request r, const Vector3f &wi, const Vector3f &wo) const { return value(Kernel::Eval, r, wi, wo); }
-
-    /// The same of facets and of whitecaps.
-    std::pair<Float, Float> eval_apart(Request r, const Vector3f &wi, const Vector3f &wo, Kernel kernel = Kernel::Eval) const {
+    /// f cos(theta_o), or where they are told apart that of facets and that of whitecaps.
+    std::pair<Float, Float> eval(Request r, const Vector3f &wi, const Vector3f &wo, bool apart, Kernel kernel = Kernel::Eval) const {
+        if (!apart)
+            return { value(kernel, r, wi, wo), 0.f };
         Request facets{ true, false, false, r.to_light }, whitecaps{ false, true, false, r.to_light };
         return { r.facets ? value(kernel, facets, wi, wo) : Float(0.f), r.whitecaps ? value(kernel, whitecaps, wi, wo) : Float(0.f) };
     }
@@ -56,9 +54,8 @@ template <typename Float> struct TracedPlace {
         in.set(Input::Random, u);
         auto drawn = replay.run(Kernel::Draw, r.parts(), in);
         Vector3f wo(drawn[0], drawn[1], drawn[2]);
-        auto [first, second] =
-            apart ? eval_apart(r, wi, wo, Kernel::Weight) : std::pair(value(Kernel::Weight, r, wi, wo), Float(0.f));
-        return { wo, first, second, pdf(r, wi, wo), drawn[3] > 0.f };
+        auto [value, whitecaps] = eval(r, wi, wo, apart, Kernel::Weight);
+        return { wo, value, whitecaps, pdf(r, wi, wo), drawn[3] > 0.f };
     }
 
     /// f cos(theta_o) of light from below for a reflectance of 1, and the density of draws by cosine. The index is that of a lane.
@@ -194,34 +191,23 @@ extern "C" {
 struct ProbWaterSample {
     float direction[3], pdf, value;
     bool whitecap;
+    float whitecaps;
 };
-static_assert(sizeof(ProbWaterSample) == 24 && sizeof(Where<float>) == 24, "as the core has them");
+static_assert(sizeof(ProbWaterSample) == 28 && sizeof(Where<float>) == 24, "as the core has them");
 struct ProbWaterPair {
     float first, second;
-};
-struct ProbWaterTriple {
-    float m01, m22, m23;
-};
-struct ProbWaterLanes {
-    float first[4], second[4];
-};
-struct ProbWaterApart {
-    ProbWaterSample sample;
-    float whitecaps;
 };
 struct ProbWaterLocal {
     alignas(16) unsigned char bytes[256];
 };
 void prob_water_place(const Water *, const Where<float> *, ProbWaterLocal *);
-float prob_water_place_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
+ProbWaterPair prob_water_place_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light, bool apart);
 float prob_water_place_pdf(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o);
-ProbWaterSample prob_water_place_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
-ProbWaterPair prob_water_place_eval_apart(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
-ProbWaterApart prob_water_place_sample_apart(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
+ProbWaterSample prob_water_place_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light, bool apart);
 ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o, float index);
-ProbWaterTriple prob_water_place_polarisation(const ProbWaterLocal *, const float *i, const float *o, float index);
-ProbWaterLanes prob_water_place_lane_reflectances(const ProbWaterLocal *, const float *i, const float *o, const float *indices);
-ProbWaterLanes prob_water_lanes(const Water *, const float *wavelengths);
+void prob_water_place_polarisation(const ProbWaterLocal *, const float *i, const float *o, float index, float *shares);
+void prob_water_place_lane_reflectances(const ProbWaterLocal *, const float *i, const float *o, size_t count, const float *indices, float *ratios);
+void prob_water_lanes(const Water *, size_t count, const float *wavelengths, float *indices, float *whitecaps);
 float prob_water_place_water_leaving_share(const ProbWaterLocal *, uint32_t parts, const float *i, float reflectance);
 ProbWaterPair prob_water_place_diffuse(const ProbWaterLocal *);
 }
@@ -232,40 +218,30 @@ template <typename Float> struct ScalarPlace {
 
     ProbWaterLocal local;
 
-    Float eval(Request r, const Vector3f &i, const Vector3f &o) const {
-        return prob_water_place_eval(&local, r.parts(), i.data(), o.data(), r.to_light);
-    }
-    Pair eval_apart(Request r, const Vector3f &i, const Vector3f &o) const {
-        ProbWaterPair found = prob_water_place_eval_apart(&local, r.parts(), i.data(), o.data(), r.to_light);
+    Pair eval(Request r, const Vector3f &i, const Vector3f &o, bool apart) const {
+        ProbWaterPair found = prob_water_place_eval(&local, r.parts(), i.data(), o.data(), r.to_light, apart);
         return { found.first, found.second };
     }
     Float pdf(Request r, const Vector3f &i, const Vector3f &o) const {
         return prob_water_place_pdf(&local, r.parts(), i.data(), o.data());
     }
     Draw<Float> sample(Request r, const Vector3f &i, const Vector3f &u, bool apart) const {
-        auto [s, whitecaps] = apart ? prob_water_place_sample_apart(&local, r.parts(), i.data(), u.data(), r.to_light)
-                                    : ProbWaterApart{ prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light), 0.f };
-        return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, whitecaps, s.pdf, s.whitecap };
+        ProbWaterSample s = prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light, apart);
+        return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, s.whitecaps, s.pdf, s.whitecap };
     }
     Pair water_leaving(const Vector3f &i, const Vector3f &o, Float index) const {
         ProbWaterPair found = prob_water_place_water_leaving(&local, i.data(), o.data(), index);
         return { found.first, found.second };
     }
     Vector3f polarisation(const Vector3f &i, const Vector3f &o, Float index) const {
-        ProbWaterTriple found = prob_water_place_polarisation(&local, i.data(), o.data(), index);
-        return { found.m01, found.m22, found.m23 };
+        Vector3f shares;
+        prob_water_place_polarisation(&local, i.data(), o.data(), index, shares.data());
+        return shares;
     }
     template <typename Lanes> Lanes lane_reflectances(const Vector3f &i, const Vector3f &o, const Lanes &index) const {
-        ProbWaterLanes found = prob_water_place_lane_reflectances(&local, i.data(), o.data(), four(index).data());
-        return drjit::load<Lanes>(found.first);
-    }
-
-    /// As the core takes them.
-    template <typename Lanes> static std::array<float, 4> four(const Lanes &lanes) {
-        static_assert(Lanes::Size <= 4, "as many lanes as the core takes");
-        std::array<float, 4> all{};
-        std::copy_n(lanes.data(), Lanes::Size, all.begin());
-        return all;
+        Lanes ratios;
+        prob_water_place_lane_reflectances(&local, i.data(), o.data(), Lanes::Size, index.data(), ratios.data());
+        return ratios;
     }
     Float water_leaving_share(Request r, const Vector3f &i, Float reflectance) const {
         return prob_water_place_water_leaving_share(&local, r.parts(), i.data(), reflectance);
@@ -285,8 +261,9 @@ template <typename Float> struct ScalarSea {
     explicit ScalarSea(const Water &water) : water(&water) {}
 
     template <typename Lanes> std::pair<Lanes, Lanes> lanes(const Lanes &wavelengths) const {
-        ProbWaterLanes found = prob_water_lanes(water, Place::four(wavelengths).data());
-        return { drjit::load<Lanes>(found.first), drjit::load<Lanes>(found.second) };
+        std::pair<Lanes, Lanes> all;
+        prob_water_lanes(water, Lanes::Size, wavelengths.data(), all.first.data(), all.second.data());
+        return all;
     }
 
     Place at(const Where<Float> &where) const {

@@ -194,7 +194,7 @@ private:
         if (m_water_leaving)
             Throw("prob_water: chlorophyll and water_leaving are both given: one of them is the water body");
         Properties body;
-        body.set("reflectance", Properties::Spectrum(std::vector<double>(reflectance.begin(), reflectance.end()), 360.0, 830.0));
+        body.set("reflectance", Properties::Spectrum({ reflectance.begin(), reflectance.end() }, 360.0, 830.0));
         m_water_leaving = body.get_texture<Texture>("reflectance");
     }
 
@@ -358,26 +358,14 @@ private:
         return at;
     }
 
-    /// A number of every lane by its index.
-    template <typename Value> UnpolarizedSpectrum by_lane(const Local &at, Value value) const {
-        if (!m_traits.lanes)
-            return value(at.index[0]);
-        UnpolarizedSpectrum values;
-        for (size_t k = 0; k < dr::size_v<UnpolarizedSpectrum>; ++k)
-            values[k] = value(at.index[k]);
-        return values;
-    }
-
     /// Whether facets and whitecaps differ by more than their number: in polarisation or between lanes.
     bool apart() const { return is_polarized_v<Spectrum> || m_traits.lanes; }
 
     /// f cos(theta_o), 1/sr.
     Spectrum value(const Local &at, const Vector3f &wo) const {
         std::pair<Float, Float> surface(0.f, 0.f);
-        if (at.on.surface() && apart())
-            surface = at.place.eval_apart(at.on, at.wi, wo);
-        else if (at.on.surface())
-            surface.first = at.place.eval(at.on, at.wi, wo);
+        if (at.on.surface())
+            surface = at.place.eval(at.on, at.wi, wo, apart());
         return light(at, wo, surface.first, surface.second);
     }
 
@@ -386,8 +374,12 @@ private:
         UnpolarizedSpectrum diffuse = at.whitecaps * whitecaps;
         if (m_traits.lanes && at.on.facets)
             facets *= at.place.lane_reflectances(at.wi, wo, at.index);
-        if (at.on.water_leaving)
-            diffuse += at.reflectance * by_lane(at, [&](const Float &n) { return at.place.water_leaving(at.wi, wo, n).first; });
+        Float below = 0.f;
+        for (size_t k = 0; at.on.water_leaving && k < dr::size_v<UnpolarizedSpectrum>; ++k) {
+            if (k == 0 || m_traits.lanes)
+                below = at.place.water_leaving(at.wi, wo, at.index[k]).first;
+            diffuse[k] += at.reflectance[k] * below;
+        }
         if constexpr (is_polarized_v<Spectrum>)
             return polarised(at, wo, facets) + depolarizer<Spectrum>(diffuse);
         else

@@ -33,10 +33,6 @@ const _: () = assert!(size_of::<Local>() <= 256 && align_of::<Local>() <= 16);
 #[repr(C)]
 pub struct Pair(f32, f32);
 
-/// Three numbers.
-#[repr(C)]
-pub struct Triple(f32, f32, f32);
-
 impl Water {
     fn local(&self, place: &Place) -> Local<'_> {
         if !self.differs() {
@@ -82,9 +78,12 @@ impl Water {
     }
 }
 
-/// A draw whose value is the facets', and the value of the whitecaps.
+/// A draw whose value is the facets' where they are told apart, and then the value of the whitecaps.
 #[repr(C)]
 pub struct Apart(Sample<f32>, f32);
+
+/// Lanes of a spectrum, at most.
+const LANES: usize = 4;
 
 const FACETS: Parts = Parts { facets: true, whitecaps: false };
 const WHITECAPS: Parts = Parts { facets: false, whitecaps: true };
@@ -133,7 +132,8 @@ pub extern "C" fn prob_water_place<'a>(water: &'a Water, place: &Place, local: &
     local.write(water.local(place));
 }
 
-/// The value. The path runs to the light, which is then at `o`, or comes from it.
+/// The value and 0, or where they are told apart that of facets and that of whitecaps. The path runs to the light, which is then at
+/// `o`, or comes from it.
 #[unsafe(no_mangle)]
 pub extern "C" fn prob_water_place_eval(
     local: &Local,
@@ -141,20 +141,12 @@ pub extern "C" fn prob_water_place_eval(
     i: &[f32; 3],
     o: &[f32; 3],
     to_light: bool,
-) -> f32 {
-    local.eval(*i, *o, parts(bits), to_light)
-}
-
-/// The values of facets and whitecaps.
-#[unsafe(no_mangle)]
-pub extern "C" fn prob_water_place_eval_apart(
-    local: &Local,
-    bits: u32,
-    i: &[f32; 3],
-    o: &[f32; 3],
-    to_light: bool,
+    apart: bool,
 ) -> Pair {
     let parts = parts(bits);
+    if !apart {
+        return Pair(local.eval(*i, *o, parts, to_light), 0.0);
+    }
     let facets = if parts.facets { local.eval(*i, *o, FACETS, to_light) } else { 0.0 };
     Pair(facets, local.whitecaps(*i, *o, parts, to_light))
 }
@@ -177,21 +169,13 @@ pub extern "C" fn prob_water_place_sample(
     i: &[f32; 3],
     u: &[f32; 3],
     to_light: bool,
-) -> Sample<f32> {
-    local.sample(*i, *u, parts(bits), to_light)
-}
-
-/// The same, with the values of facets and whitecaps.
-#[unsafe(no_mangle)]
-pub extern "C" fn prob_water_place_sample_apart(
-    local: &Local,
-    bits: u32,
-    i: &[f32; 3],
-    u: &[f32; 3],
-    to_light: bool,
+    apart: bool,
 ) -> Apart {
     let parts = parts(bits);
     let mut sample = local.sample(*i, *u, parts, to_light);
+    if !apart {
+        return Apart(sample, 0.0);
+    }
     let whitecaps = local.whitecaps(*i, sample.direction, parts, to_light);
     sample.f = if parts.facets { (sample.f - whitecaps).max(0.0) } else { 0.0 };
     Apart(sample, whitecaps)
@@ -219,39 +203,56 @@ pub extern "C" fn prob_water_place_polarisation(
     i: &[f32; 3],
     o: &[f32; 3],
     index: f32,
-) -> Triple {
-    let [m01, m22, m23] =
-        local.reflectance(index).polarised_between(i.map(f64::from), o.map(f64::from)).map(|m| m as f32);
-    Triple(m01, m22, m23)
+    shares: &mut [f32; 3],
+) {
+    let [i, o] = [i, o].map(|v| v.map(f64::from));
+    *shares = local.reflectance(index).polarised_between(i, o).map(|m| m as f32);
 }
 
-/// What differs between lanes, four at most.
-#[repr(C)]
-pub struct Lanes([f32; 4], [f32; 4]);
-
 /// The indices at wavelengths in nm, and the whitecaps' BRDF over the sea's.
+///
+/// # Safety
+/// The arrays hold `count` numbers.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_lanes(water: &Water, wavelengths: &[f32; 4]) -> Lanes {
-    let lanes = match &water.single_dispersion {
-        Some(dispersion) => wavelengths.map(|wavelength| dispersion.at(wavelength)),
-        None => [[f32::NAN, 1.0]; 4],
-    };
-    Lanes(lanes.map(|[index, _]| index), lanes.map(|[_, whitecaps]| whitecaps))
+pub unsafe extern "C" fn prob_water_lanes(
+    water: &Water,
+    count: usize,
+    wavelengths: *const f32,
+    indices: *mut f32,
+    whitecaps: *mut f32,
+) {
+    for k in 0..count {
+        // SAFETY: by this function's contract.
+        let wavelength = unsafe { *wavelengths.add(k) };
+        let dispersion = water.single_dispersion.as_ref();
+        let [index, foam] = dispersion.map_or([f32::NAN, 1.0], |dispersion| dispersion.at(wavelength));
+        // SAFETY: by this function's contract.
+        unsafe { (*indices.add(k), *whitecaps.add(k)) = (index, foam) };
+    }
 }
 
 /// The facets' reflectance for the indices of lanes over the sea's.
+///
+/// # Safety
+/// The arrays hold `count` numbers.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_place_lane_reflectances(
+pub unsafe extern "C" fn prob_water_place_lane_reflectances(
     local: &Local,
     i: &[f32; 3],
     o: &[f32; 3],
-    indices: &[f32; 4],
-) -> Lanes {
-    let ratios = match &local.water.single_dispersion {
-        Some(dispersion) => dispersion.ratios(*indices, *i, *o),
-        None => [1.0; 4],
-    };
-    Lanes(ratios, [1.0; 4])
+    count: usize,
+    indices: *const f32,
+    ratios: *mut f32,
+) {
+    // SAFETY: by this function's contract; there is no more than a spectrum's lanes.
+    let given = unsafe { std::slice::from_raw_parts(indices, count.min(LANES)) };
+    let mut all = [1.0; LANES];
+    all[..given.len()].copy_from_slice(given);
+    if let Some(dispersion) = &local.water.single_dispersion {
+        all = dispersion.ratios(all, *i, *o);
+    }
+    // SAFETY: by this function's contract.
+    unsafe { std::slice::from_raw_parts_mut(ratios, given.len()) }.copy_from_slice(&all[..given.len()]);
 }
 
 /// The share of draws for the light from below.
