@@ -4,9 +4,10 @@ use crate::input::{self, Columns, STRIDE};
 use crate::progress::Progress;
 use crate::table::{self, Cell, Table};
 use crate::{Outcome, empirical_table, files, parameters};
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use csv::ByteRecord;
 use prob_water::batch::Rows;
+use prob_water::brdf::{Parts, polarised};
 use prob_water::statistics::FARTHEST;
 use prob_water::{EnsembleLobe, Error, InstanceLobe, Surface};
 use rayon::prelude::*;
@@ -28,6 +29,10 @@ pub fn command() -> Command {
                      - is standard input [default: -]",
                 ),
         )
+        .arg(Arg::new("mueller").long("mueller").action(ArgAction::SetTrue).help(
+            "append the Mueller matrix, m00 to m33, 1/sr (m00 is f): first axes in the planes of the vertical \
+             and the directions, towards larger angles from the vertical",
+        ))
         .arg(empirical_table::flag())
         .args(table::flags())
         .args(parameters::flags_and_from(Surface::Flat))
@@ -58,8 +63,18 @@ pub fn run(matches: &ArgMatches) -> Outcome {
         return Err(format!("normals have no meaning with surface = {}", surface.name()).into());
     }
     let mut estimates = Vec::new();
+    // What whitecaps reflect of it, where matrices are asked for.
+    let matrices = matches.get_flag("mueller");
+    let mut foam = vec![0.0; if matrices { f.len() } else { 0 }];
+    const FOAM: Parts = Parts { facets: false, whitecaps: true };
     match surface {
-        Surface::Flat => rows.eval(&water.lobe()?, &mut f)?,
+        Surface::Flat => {
+            let lobe = water.lobe()?;
+            rows.eval(&lobe, &mut f)?;
+            if matrices {
+                rows.each(&mut foam, |_, i, o, n| lobe.eval_parts(i, o, n, FOAM))?;
+            }
+        }
         Surface::Instance => {
             let lobe = InstanceLobe::new(&water)?;
             rows.each(&mut f, |row, i, o, _| {
@@ -68,21 +83,36 @@ pub fn run(matches: &ArgMatches) -> Outcome {
                 let seen = lobe.eval(i, o, [x, y]);
                 if o[2] > 0.0 { seen / o[2] } else { seen }
             })?;
+            if matrices {
+                rows.each(&mut foam, |row, i, o, _| {
+                    let [x, y, _] = directions.vectors[2][row];
+                    let seen = lobe.eval_parts(i, o, [x, y], FOAM);
+                    if o[2] > 0.0 { seen / o[2] } else { seen }
+                })?;
+            }
         }
         Surface::Ensemble => {
             let lobe = EnsembleLobe::new(&water)?;
             rows.each(&mut f, |_, i, o, _| lobe.eval(i, o))?;
+            if matrices {
+                rows.each(&mut foam, |_, i, o, _| lobe.eval_parts(i, o, FOAM))?;
+            }
         }
         Surface::Empirical => {
             let lobe = empirical_table::lobe(&water, table.or(of_file.as_deref()))?;
             let [source, observer, _] = &directions.vectors;
             estimates = source.par_iter().zip(observer).map(|(i, o)| lobe.estimate(*i, *o)).collect();
             f = estimates.iter().map(|estimate| estimate.mean).collect();
+            if matrices {
+                rows.each(&mut foam, |_, i, o, _| lobe.eval_parts(i, o, FOAM))?;
+            }
         }
     }
 
     let more: &[&str] = if by_table { &["f", "u", "outside"] } else { &["f"] };
     let names = directions.columns.iter().map(|c| columns.known[*c]).chain(more.iter().copied());
+    let names = names.chain(ELEMENTS.into_iter().filter(|_| matrices));
+    let reflectance = water.local_lobe().facets.reflectance;
     let mut out = Table::new(matches, names)?;
     let mut reader = input::reader(&input);
     let mut record = ByteRecord::new();
@@ -93,7 +123,10 @@ pub fn run(matches: &ArgMatches) -> Outcome {
             Cell::Given(text, directions.vectors[column / 3][row][column % 3])
         });
         let known = estimates.get(row).map(|e| [Cell::Number(e.std), Cell::Count(e.outside.into())]);
-        let cells = given.chain([Cell::Number(*f)]).chain(known.into_iter().flatten());
+        let [i, o] = [0, 1].map(|k| directions.vectors[k][row]);
+        let matrix = foam.get(row).map(|foam| polarised::mueller(&reflectance, i, o, [f - foam, *foam]));
+        let matrix = matrix.iter().flatten().flatten().map(|m| Cell::Number(m + 0.0));
+        let cells = given.chain([Cell::Number(*f)]).chain(known.into_iter().flatten()).chain(matrix);
         out.row(&cells.collect::<Vec<_>>())?;
         if row % STRIDE == 0 {
             progress.at(half + reader.position().byte());
@@ -101,6 +134,12 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     }
     table::end([out])
 }
+
+/// Of a Mueller matrix, row by row.
+const ELEMENTS: [&str; 16] = [
+    "m00", "m01", "m02", "m03", "m10", "m11", "m12", "m13", "m20", "m21", "m22", "m23", "m30", "m31", "m32",
+    "m33",
+];
 
 const COLUMNS: Columns = Columns {
     known: &["ix", "iy", "iz", "ox", "oy", "oz", "nx", "ny", "nz"],

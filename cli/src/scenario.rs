@@ -110,10 +110,14 @@ impl Run<'_> {
     fn integrals(&self, exact: &Exact, tables: &mut Tables) -> Outcome {
         for engagement in &self.part.engagements {
             let all = exact.statistics(engagement, self.limits);
+            let stokes = tables.polarised().then(|| exact.stokes(engagement));
             self.progress.add(1);
             self.progress.aside(|| {
                 let mut all = all.iter().enumerate();
-                all.try_for_each(|(observer, s)| tables.statistics(engagement, observer, s, By::Integrals))
+                all.try_for_each(|(observer, s)| {
+                    let stokes = stokes.as_ref().map(|stokes| stokes[observer]);
+                    tables.statistics(engagement, observer, s, By::Integrals, stokes)
+                })
             })?;
         }
         Ok(())
@@ -130,6 +134,7 @@ impl Run<'_> {
                 }
                 None => vec![None; engagement.observers().len()],
             };
+            let stokes = exact.filter(|_| tables.polarised()).map(|exact| exact.stokes(engagement));
             let others = engagement.with_observers(|observer| integrals[observer].is_none());
             let samples = match others.observers() {
                 [] => None,
@@ -140,7 +145,10 @@ impl Run<'_> {
                 let mut drawn = 0..;
                 for (observer, integrals) in integrals.iter().enumerate() {
                     match (integrals, &samples) {
-                        (Some(s), _) => tables.statistics(engagement, observer, s, By::Integrals)?,
+                        (Some(s), _) => {
+                            let stokes = stokes.as_ref().map(|stokes| stokes[observer]);
+                            tables.statistics(engagement, observer, s, By::Integrals, stokes)?;
+                        }
                         (None, Some(samples)) => {
                             let place = [0, drawn.next().unwrap_or_default()];
                             tables.sample(engagement, observer, samples, place, self.limits)?;
@@ -189,9 +197,10 @@ impl Run<'_> {
                 })
                 .collect();
             for (engagement, all) in group.iter().zip(&all) {
-                for (observer, (estimate, statistics)) in all.iter().enumerate() {
+                for ((observer, (estimate, s)), [i, o]) in all.iter().enumerate().zip(engagement.ways()) {
                     let by = By::Table { outside: estimate.outside };
-                    self.progress.aside(|| tables.statistics(engagement, observer, statistics, by))?;
+                    let stokes = tables.polarised().then(|| lobe.stokes(i, o, engagement.stokes()));
+                    self.progress.aside(|| tables.statistics(engagement, observer, s, by, stokes))?;
                 }
             }
         }

@@ -26,9 +26,9 @@ template <typename Float> struct Where {
 
 template <typename Float> struct Draw {
     mitsuba::Vector<Float, 3> wo;
-    /// f cos(theta_o) and density, 1/sr.
-    Float value, pdf;
-    drjit::mask_t<Float> whitecap;
+    /// f cos(theta_o) and density, 1/sr; where they are told apart, of facets, and that of whitecaps.
+    Float value, whitecaps, pdf;
+    drjit::mask_t<Float> from_whitecap;
 };
 
 template <typename Float> struct TracedPlace {
@@ -38,23 +38,44 @@ template <typename Float> struct TracedPlace {
     bool ordered;
     Inputs<Float> inputs;
 
-    Float eval(Request r, const Vector3f &wi, const Vector3f &wo) const { return value(Kernel::Eval, r, wi, wo); }
+    /// f cos(theta_o), or where they are told apart that of facets and that of whitecaps.
+    std::pair<Float, Float> eval(Request r, const Vector3f &wi, const Vector3f &wo, bool apart, Kernel kernel = Kernel::Eval) const {
+        if (!apart)
+            return { value(kernel, r, wi, wo), 0.f };
+        Request facets{ true, false, false, r.to_light }, whitecaps{ false, true, false, r.to_light };
+        return { r.facets ? value(kernel, facets, wi, wo) : Float(0.f), r.whitecaps ? value(kernel, whitecaps, wi, wo) : Float(0.f) };
+    }
 
     Float pdf(Request r, const Vector3f &wi, const Vector3f &wo) const { return run(Kernel::Pdf, r, wi, wo)[0]; }
 
-    Draw<Float> sample(Request r, const Vector3f &wi, const Vector3f &u) const {
+    Draw<Float> sample(Request r, const Vector3f &wi, const Vector3f &u, bool apart) const {
         Inputs<Float> in = inputs;
         in.set(Input::Source, wi);
         in.set(Input::Random, u);
         auto drawn = replay.run(Kernel::Draw, r.parts(), in);
         Vector3f wo(drawn[0], drawn[1], drawn[2]);
-        return { wo, value(Kernel::Weight, r, wi, wo), pdf(r, wi, wo), drawn[3] > 0.f };
+        auto [value, whitecaps] = eval(r, wi, wo, apart, Kernel::Weight);
+        return { wo, value, whitecaps, pdf(r, wi, wo), drawn[3] > 0.f };
     }
 
-    /// f cos(theta_o) of light from below for a reflectance of 1, and the density of draws by cosine.
-    std::pair<Float, Float> water_leaving(const Vector3f &wi, const Vector3f &wo) const {
-        auto found = run(Kernel::WaterLeaving, {}, wi, wo);
+    /// f cos(theta_o) of light from below for a reflectance of 1, and the density of draws by cosine. The index is that of a lane.
+    std::pair<Float, Float> water_leaving(const Vector3f &wi, const Vector3f &wo, const Float &index) const {
+        auto found = run(Kernel::WaterLeaving, {}, wi, wo, 0.f, index);
         return { found[0], found[1] };
+    }
+
+    /// m01, m22 and m23 of the facets' Mueller matrix over m00.
+    Vector3f polarisation(const Vector3f &wi, const Vector3f &wo, const Float &index) const {
+        auto found = run(Kernel::Polarisation, {}, wi, wo, 0.f, index);
+        return { found[0], found[1], found[2] };
+    }
+
+    /// The facets' reflectance for the indices of lanes over the sea's.
+    template <typename Lanes> Lanes lane_reflectances(const Vector3f &wi, const Vector3f &wo, const Lanes &index) const {
+        Lanes ratios;
+        for (size_t k = 0; k < Lanes::Size; ++k)
+            ratios[k] = run(Kernel::LaneReflectance, {}, wi, wo, 0.f, index[k])[0];
+        return ratios;
     }
 
     Float water_leaving_share(Request r, const Vector3f &wi, const Float &reflectance) const {
@@ -77,8 +98,10 @@ private:
         return run(kernel, r, turned ? wo : wi, turned ? wi : wo, wo.z())[0];
     }
 
-    std::vector<Float> run(Kernel kernel, Request r, const Vector3f &i, const Vector3f &o, const Float &cos = 0.f) const {
+    std::vector<Float> run(Kernel kernel, Request r, const Vector3f &i, const Vector3f &o, const Float &cos = 0.f,
+                           const Float &index = 0.f) const {
         Inputs<Float> in = inputs;
+        in.set(Input::Index, index);
         in.set(Input::Source, i);
         in.set(Input::Observer, o);
         in.set(Input::Cosine, cos);
@@ -110,6 +133,19 @@ template <typename Float_> struct TracedSea {
     }
 
     DRJIT_STRUCT(TracedSea, replay, waves)
+
+    /// The indices at wavelengths in nm, and the whitecaps' BRDF over the sea's.
+    template <typename Lanes> std::pair<Lanes, Lanes> lanes(const Lanes &wavelengths) const {
+        std::pair<Lanes, Lanes> all;
+        for (size_t k = 0; k < Lanes::Size; ++k) {
+            Inputs<Float> in;
+            in.set(Input::Wavelength, wavelengths[k]);
+            auto found = replay.run(Kernel::Lane, 0, in);
+            all.first[k] = found[0];
+            all.second[k] = found[1];
+        }
+        return all;
+    }
 
     Place at(const Where<Float> &where) const {
         Place place{ replay, traits.ordered, {} };
@@ -155,8 +191,9 @@ extern "C" {
 struct ProbWaterSample {
     float direction[3], pdf, value;
     bool whitecap;
+    float whitecaps;
 };
-static_assert(sizeof(ProbWaterSample) == 24 && sizeof(Where<float>) == 24, "as the core has them");
+static_assert(sizeof(ProbWaterSample) == 28 && sizeof(Where<float>) == 24, "as the core has them");
 struct ProbWaterPair {
     float first, second;
 };
@@ -164,10 +201,13 @@ struct ProbWaterLocal {
     alignas(16) unsigned char bytes[256];
 };
 void prob_water_place(const Water *, const Where<float> *, ProbWaterLocal *);
-float prob_water_place_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light);
+ProbWaterPair prob_water_place_eval(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o, bool to_light, bool apart);
 float prob_water_place_pdf(const ProbWaterLocal *, uint32_t parts, const float *i, const float *o);
-ProbWaterSample prob_water_place_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light);
-ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o);
+ProbWaterSample prob_water_place_sample(const ProbWaterLocal *, uint32_t parts, const float *i, const float *u, bool to_light, bool apart);
+ProbWaterPair prob_water_place_water_leaving(const ProbWaterLocal *, const float *i, const float *o, float index);
+void prob_water_place_polarisation(const ProbWaterLocal *, const float *i, const float *o, float index, float *shares);
+void prob_water_place_lane_reflectances(const ProbWaterLocal *, const float *i, const float *o, size_t count, const float *indices, float *ratios);
+void prob_water_lanes(const Water *, size_t count, const float *wavelengths, float *indices, float *whitecaps);
 float prob_water_place_water_leaving_share(const ProbWaterLocal *, uint32_t parts, const float *i, float reflectance);
 ProbWaterPair prob_water_place_diffuse(const ProbWaterLocal *);
 }
@@ -178,19 +218,30 @@ template <typename Float> struct ScalarPlace {
 
     ProbWaterLocal local;
 
-    Float eval(Request r, const Vector3f &i, const Vector3f &o) const {
-        return prob_water_place_eval(&local, r.parts(), i.data(), o.data(), r.to_light);
+    Pair eval(Request r, const Vector3f &i, const Vector3f &o, bool apart) const {
+        ProbWaterPair found = prob_water_place_eval(&local, r.parts(), i.data(), o.data(), r.to_light, apart);
+        return { found.first, found.second };
     }
     Float pdf(Request r, const Vector3f &i, const Vector3f &o) const {
         return prob_water_place_pdf(&local, r.parts(), i.data(), o.data());
     }
-    Draw<Float> sample(Request r, const Vector3f &i, const Vector3f &u) const {
-        ProbWaterSample s = prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light);
-        return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, s.pdf, s.whitecap };
+    Draw<Float> sample(Request r, const Vector3f &i, const Vector3f &u, bool apart) const {
+        ProbWaterSample s = prob_water_place_sample(&local, r.parts(), i.data(), u.data(), r.to_light, apart);
+        return { Vector3f(s.direction[0], s.direction[1], s.direction[2]), s.value, s.whitecaps, s.pdf, s.whitecap };
     }
-    Pair water_leaving(const Vector3f &i, const Vector3f &o) const {
-        ProbWaterPair found = prob_water_place_water_leaving(&local, i.data(), o.data());
+    Pair water_leaving(const Vector3f &i, const Vector3f &o, Float index) const {
+        ProbWaterPair found = prob_water_place_water_leaving(&local, i.data(), o.data(), index);
         return { found.first, found.second };
+    }
+    Vector3f polarisation(const Vector3f &i, const Vector3f &o, Float index) const {
+        Vector3f shares;
+        prob_water_place_polarisation(&local, i.data(), o.data(), index, shares.data());
+        return shares;
+    }
+    template <typename Lanes> Lanes lane_reflectances(const Vector3f &i, const Vector3f &o, const Lanes &index) const {
+        Lanes ratios;
+        prob_water_place_lane_reflectances(&local, i.data(), o.data(), Lanes::Size, index.data(), ratios.data());
+        return ratios;
     }
     Float water_leaving_share(Request r, const Vector3f &i, Float reflectance) const {
         return prob_water_place_water_leaving_share(&local, r.parts(), i.data(), reflectance);
@@ -208,6 +259,12 @@ template <typename Float> struct ScalarSea {
 
     ScalarSea() = default;
     explicit ScalarSea(const Water &water) : water(&water) {}
+
+    template <typename Lanes> std::pair<Lanes, Lanes> lanes(const Lanes &wavelengths) const {
+        std::pair<Lanes, Lanes> all;
+        prob_water_lanes(water, Lanes::Size, wavelengths.data(), all.first.data(), all.second.data());
+        return all;
+    }
 
     Place at(const Where<Float> &where) const {
         Place place;

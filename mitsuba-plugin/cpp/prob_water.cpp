@@ -4,6 +4,7 @@
 #include <mitsuba/core/properties.h>
 #include <mitsuba/core/warp.h>
 #include <mitsuba/render/bsdf.h>
+#include <mitsuba/render/mueller.h>
 #include <mitsuba/render/texture.h>
 #include <algorithm>
 #include <mutex>
@@ -30,12 +31,15 @@ public:
     using Sea = prob_water::Sea<Float>;
     using Place = typename Sea::Place;
 
+    static constexpr prob_water::Variant variant{ dr::is_jit_v<Float>, is_polarized_v<Spectrum>, is_spectral_v<Spectrum> };
+
     ProbWater(const Properties &props) : Base(props), m_options(prob_water::options()) {
         if (props.has_property("water_leaving"))
             m_water_leaving = props.get_texture<Texture>("water_leaving");
         check_water_leaving();
         refuse([&] {
             take(props);
+            take_water_body(m_options->water_body());
             if (props.has_property("table"))
                 m_options->set_text("table", file_resolver()->resolve(props.get<std::string_view>("table")).string());
         });
@@ -62,6 +66,8 @@ public:
             cb->put("footprint", m_footprint, ParamFlags::NonDifferentiable);
         if (m_whitecap_texture)
             cb->put("whitecaps", m_whitecap_texture, ParamFlags::NonDifferentiable);
+        if (m_ior)
+            cb->put("ior", m_ior, ParamFlags::NonDifferentiable);
         if (m_water_leaving)
             cb->put("water_leaving", m_water_leaving, ParamFlags::Differentiable);
     }
@@ -69,7 +75,7 @@ public:
     void parameters_changed(const std::vector<std::string> & /*keys*/) override {
         try {
             check_water_leaving();
-            refuse([&] { m_water.emplace(m_options->change({ m_exposed.data(), m_exposed.size() }, dr::is_jit_v<Float>)); });
+            refuse([&] { m_water.emplace(m_options->change({ m_exposed.data(), m_exposed.size() }, variant)); });
         } catch (...) {
             // A refused value leaves the sea as it was.
             apply();
@@ -89,7 +95,7 @@ public:
     Spectrum eval(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override {
         MI_MASKED_FUNCTION(ProfilerPhase::BSDFEvaluate, active);
         auto at = local(ctx, si, active);
-        return at ? spectrum(value(*at, wo)) & active : 0.f;
+        return at ? value(*at, wo) & active : 0.f;
     }
 
     Float pdf(const BSDFContext &ctx, const SurfaceInteraction3f &si, const Vector3f &wo, Mask active) const override {
@@ -104,7 +110,7 @@ public:
         auto at = local(ctx, si, active);
         if (!at)
             return { 0.f, 0.f };
-        return { spectrum(value(*at, wo)) & active, dr::select(active, density(*at, wo), 0.f) };
+        return { value(*at, wo) & active, dr::select(active, density(*at, wo), 0.f) };
     }
 
     std::tuple<Spectrum, Float, BSDFSample3f, Spectrum>
@@ -115,12 +121,14 @@ public:
         if (!at)
             return { 0.f, 0.f, dr::zeros<BSDFSample3f>(), 0.f };
         auto [bs, weight] = draw(*at, sample1, sample2, active && Frame3f::cos_theta(si.wi) > 0.f);
-        return { spectrum(value(*at, wo)) & active, dr::select(active, density(*at, wo), 0.f), bs, weight };
+        return { value(*at, wo) & active, dr::select(active, density(*at, wo), 0.f), bs, weight };
     }
 
     Spectrum eval_diffuse_reflectance(const SurfaceInteraction3f &si, Mask active) const override {
         auto [whitecaps, smooth] = place(si, active).diffuse();
         UnpolarizedSpectrum diffuse = whitecaps;
+        if (m_traits.lanes)
+            diffuse *= lanes(si, active).second;
         if (m_water_leaving)
             diffuse += within_one(m_water_leaving->eval(si, active)) * smooth;
         return depolarizer<Spectrum>(diffuse) & active;
@@ -172,9 +180,22 @@ private:
             m_options->set_object(name);
             if (name == "footprint")
                 m_footprint = props.get_unbounded_texture<Texture>(name);
+            else if (name == "ior")
+                m_ior = props.get_unbounded_texture<Texture>(name);
             else
                 m_whitecap_texture = props.get_texture<Texture>(name);
         });
+    }
+
+    /// Takes over the reflectance of a water body by its chlorophyll.
+    void take_water_body(const rust::Vec<double> &reflectance) {
+        if (reflectance.empty())
+            return;
+        if (m_water_leaving)
+            Throw("prob_water: chlorophyll and water_leaving are both given: one of them is the water body");
+        Properties body;
+        body.set("reflectance", Properties::Spectrum({ reflectance.begin(), reflectance.end() }, 360.0, 830.0));
+        m_water_leaving = body.get_texture<Texture>("reflectance");
     }
 
     const double *exposed(const std::string &name) const {
@@ -217,7 +238,7 @@ private:
     }
 
     void configure() {
-        m_water.emplace(refuse([&] { return m_options->configure(dr::is_jit_v<Float>); }));
+        m_water.emplace(refuse([&] { return m_options->configure(variant); }));
         for (const rust::String &warning : (*m_water)->warnings())
             Log(Warn, "prob_water: %s", std::string(warning));
         m_exposed = (*m_water)->exposed();
@@ -236,7 +257,7 @@ private:
 
         m_components.clear();
         uint32_t where = +BSDFFlags::FrontSide;
-        if (m_traits.drawn || m_traits.whitecap_texture || m_traits.varying_footprint)
+        if (m_traits.drawn || m_traits.whitecap_texture || m_traits.varying_footprint || m_ior)
             where |= +BSDFFlags::SpatiallyVarying;
         if (m_traits.pixel)
             where |= +BSDFFlags::NeedsDifferentials;
@@ -299,7 +320,15 @@ private:
         return prob_water::smaller(prob_water::larger(value, 0.f), 1.f);
     }
 
-    static Spectrum spectrum(const UnpolarizedSpectrum &value) { return depolarizer<Spectrum>(value); }
+    /// The index of every lane, and the whitecaps' BRDF there over the sea's.
+    std::pair<UnpolarizedSpectrum, UnpolarizedSpectrum> lanes(const SurfaceInteraction3f &si, Mask active) const {
+        UnpolarizedSpectrum index = 0.f, whitecaps = 1.f;
+        if constexpr (is_spectral_v<Spectrum>)
+            std::tie(index, whitecaps) = m_sea.lanes(UnpolarizedSpectrum(si.wavelengths));
+        if (m_ior)
+            index = prob_water::larger(m_ior->eval(si, active), 1.f);
+        return { index, whitecaps };
+    }
 
     /// The water as an interaction sees it.
     struct Local {
@@ -310,6 +339,8 @@ private:
         UnpolarizedSpectrum reflectance = 0.f;
         /// Share of draws that go to it.
         Float share = 0.f;
+        /// Where lanes differ: what `lanes` gives.
+        UnpolarizedSpectrum index = 0.f, whitecaps = 1.f;
     };
 
     /// Nothing where nothing is asked for.
@@ -318,6 +349,8 @@ private:
         if (unlikely(on.none() || dr::none_or<false>(active)))
             return std::nullopt;
         Local at{ on, place(si, active), si.wi };
+        if (m_traits.lanes)
+            std::tie(at.index, at.whitecaps) = lanes(si, active);
         if (on.water_leaving) {
             at.reflectance = within_one(m_water_leaving->eval(si, active));
             at.share = on.surface() ? at.place.water_leaving_share(on, si.wi, dr::mean(at.reflectance)) : Float(1.f);
@@ -325,25 +358,61 @@ private:
         return at;
     }
 
+    /// Whether facets and whitecaps differ by more than their number: in polarisation or between lanes.
+    bool apart() const { return is_polarized_v<Spectrum> || m_traits.lanes; }
+
     /// f cos(theta_o), 1/sr.
-    UnpolarizedSpectrum value(const Local &at, const Vector3f &wo) const {
-        UnpolarizedSpectrum value = 0.f;
+    Spectrum value(const Local &at, const Vector3f &wo) const {
+        std::pair<Float, Float> surface(0.f, 0.f);
         if (at.on.surface())
-            value = at.place.eval(at.on, at.wi, wo);
-        if (at.on.water_leaving)
-            value += at.reflectance * at.place.water_leaving(at.wi, wo).first;
-        return value;
+            surface = at.place.eval(at.on, at.wi, wo, apart());
+        return light(at, wo, surface.first, surface.second);
+    }
+
+    /// The same, for what facets and whitecaps reflect of light without polarisation at the sea's own wavelength.
+    Spectrum light(const Local &at, const Vector3f &wo, UnpolarizedSpectrum facets, const Float &whitecaps) const {
+        UnpolarizedSpectrum diffuse = at.whitecaps * whitecaps;
+        if (m_traits.lanes && at.on.facets)
+            facets *= at.place.lane_reflectances(at.wi, wo, at.index);
+        Float below = 0.f;
+        for (size_t k = 0; at.on.water_leaving && k < dr::size_v<UnpolarizedSpectrum>; ++k) {
+            if (k == 0 || m_traits.lanes)
+                below = at.place.water_leaving(at.wi, wo, at.index[k]).first;
+            diffuse[k] += at.reflectance[k] * below;
+        }
+        if constexpr (is_polarized_v<Spectrum>)
+            return polarised(at, wo, facets) + depolarizer<Spectrum>(diffuse);
+        else
+            return facets + diffuse;
+    }
+
+    /// The Mueller matrix of what facets reflect, in Mitsuba's frames.
+    Spectrum polarised(const Local &at, const Vector3f &wo, const UnpolarizedSpectrum &facets) const {
+        UnpolarizedSpectrum m[3];
+        Vector3f of_lane = 0.f;
+        for (size_t k = 0; k < dr::size_v<UnpolarizedSpectrum>; ++k) {
+            if (k == 0 || m_traits.lanes)
+                of_lane = at.place.polarisation(at.wi, wo, at.index[k]);
+            for (size_t j = 0; j < 3; ++j)
+                m[j][k] = facets[k] * of_lane[j];
+        }
+        Spectrum matrix(facets, m[0], 0.f, 0.f, m[0], facets, 0.f, 0.f, 0.f, 0.f, m[1], m[2], 0.f, 0.f, -m[2], m[1]);
+        // About the normal of the plane of incidence, which the two directions have in common.
+        Vector3f light = at.on.to_light ? wo : at.wi, view = at.on.to_light ? at.wi : wo, s = dr::cross(light, view);
+        s = dr::select(dr::squared_norm(s) > 1e-12f, s, mueller::stokes_basis(view));
+        return mueller::rotate_mueller_basis(matrix, -light, s, mueller::stokes_basis(-light), view, s,
+                                             mueller::stokes_basis(view));
     }
 
     /// Density of draws, 1/sr.
     Float density(const Local &at, const Vector3f &wo) const {
         Float density = at.on.surface() ? at.place.pdf(at.on, at.wi, wo) : Float(0.f);
-        return at.on.water_leaving ? dr::lerp(density, at.place.water_leaving(at.wi, wo).second, at.share) : density;
+        return at.on.water_leaving ? dr::lerp(density, at.place.water_leaving(at.wi, wo, at.index[0]).second, at.share) : density;
     }
 
     std::pair<BSDFSample3f, Spectrum> draw(const Local &at, Float sample1, const Point2f &sample2, Mask active) const {
         BSDFSample3f bs = dr::zeros<BSDFSample3f>();
-        UnpolarizedSpectrum f_cos = 0.f;
+        Spectrum f_cos = 0.f;
         Mask diffuse = false, below = false;
         if (at.on.water_leaving) {
             below = sample1 < at.share;
@@ -351,11 +420,12 @@ private:
             sample1 = dr::select(below, 0.f, prob_water::smaller(rest, dr::OneMinusEpsilon<Float>));
         }
         if (at.on.surface() && !dr::all_or<false>(below)) {
-            auto drawn = at.place.sample(at.on, at.wi, { sample1, sample2.x(), sample2.y() });
+            auto drawn = at.place.sample(at.on, at.wi, { sample1, sample2.x(), sample2.y() }, apart());
             bs.wo = drawn.wo;
             bs.pdf = drawn.pdf;
-            f_cos = drawn.value;
-            diffuse = drawn.whitecap;
+            diffuse = drawn.from_whitecap;
+            if (!at.on.water_leaving)
+                f_cos = light(at, drawn.wo, drawn.value, drawn.whitecaps);
         }
         if (at.on.water_leaving) {
             bs.wo = dr::select(below, warp::square_to_cosine_hemisphere(sample2), bs.wo);
@@ -367,18 +437,18 @@ private:
         bs.eta = 1.f;
         bs.sampled_component = dr::select(diffuse, UInt32(1), UInt32(0));
         bs.sampled_type = dr::select(diffuse, UInt32(+BSDFFlags::DiffuseReflection), UInt32(+BSDFFlags::GlossyReflection));
-        return { bs, spectrum(f_cos / bs.pdf) & active };
+        return { bs, (f_cos / bs.pdf) & active };
     }
 
     rust::Box<prob_water::Options> m_options;
     std::optional<rust::Box<prob_water::Water>> m_water;
     rust::Vec<prob_water::Number> m_exposed;
     prob_water::Traits m_traits{};
-    ref<Texture> m_footprint, m_whitecap_texture, m_water_leaving;
+    ref<Texture> m_footprint, m_whitecap_texture, m_ior, m_water_leaving;
     std::vector<ScalarFloat> m_shares;
     Sea m_sea;
 
-    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_water_leaving, m_sea)
+    MI_TRAVERSE_CB(Base, m_footprint, m_whitecap_texture, m_ior, m_water_leaving, m_sea)
 };
 
 extern "C" MI_EXPORT void init_plugin(std::string_view name, PluginRegisterFn fn) {

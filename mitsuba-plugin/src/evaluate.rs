@@ -4,7 +4,7 @@
 use crate::parts;
 use crate::water::{Water, Waves};
 use prob_water::brdf::Parts;
-use prob_water::{Lobe, Sample};
+use prob_water::{Lobe, Reflectance, Sample};
 use std::mem::MaybeUninit;
 
 /// What a place has of its own.
@@ -78,9 +78,51 @@ impl Water {
     }
 }
 
+/// A draw whose value is the facets' where they are told apart, and then the value of the whitecaps.
+#[repr(C)]
+pub struct Apart(Sample<f32>, f32);
+
+/// Lanes of a spectrum, at most.
+const LANES: usize = 4;
+
+const FACETS: Parts = Parts { facets: true, whitecaps: false };
+const WHITECAPS: Parts = Parts { facets: false, whitecaps: true };
+
 impl Local<'_> {
+    fn eval(&self, i: [f32; 3], o: [f32; 3], parts: Parts, to_light: bool) -> f32 {
+        match &self.own {
+            Some((lobe, normal)) => lobe.on_wave(i, o, *normal, parts),
+            None => self.water.eval(i, o, parts, to_light),
+        }
+    }
+
+    /// The value of whitecaps, as far as they take part.
+    fn whitecaps(&self, i: [f32; 3], o: [f32; 3], parts: Parts, to_light: bool) -> f32 {
+        if parts.whitecaps { self.eval(i, o, WHITECAPS, to_light) } else { 0.0 }
+    }
+
+    fn sample(&self, i: [f32; 3], u: [f32; 3], parts: Parts, to_light: bool) -> Sample<f32> {
+        let Some((lobe, normal)) = &self.own else {
+            return self.water.sample(i, u, parts, to_light);
+        };
+        let mut sample = lobe.sample_parts(i, *normal, u, parts);
+        if sample.direction[2] <= 0.0 {
+            sample.pdf = 0.0;
+        }
+        sample.f = lobe.on_wave(i, sample.direction, *normal, parts);
+        sample
+    }
+
     fn lobe(&self) -> &Lobe<f32> {
         self.own.as_ref().map_or(&self.water.lobe, |(lobe, _)| lobe)
+    }
+
+    /// For the index of a lane, where lanes differ.
+    fn reflectance(&self, index: f32) -> Reflectance<f64> {
+        match &self.water.single_dispersion {
+            Some(dispersion) => dispersion.reflectance(index),
+            None => self.lobe().facets.reflectance,
+        }
     }
 }
 
@@ -90,7 +132,8 @@ pub extern "C" fn prob_water_place<'a>(water: &'a Water, place: &Place, local: &
     local.write(water.local(place));
 }
 
-/// The value. The path runs to the light, which is then at `o`, or comes from it.
+/// The value and 0, or where they are told apart that of facets and that of whitecaps. The path runs to the light, which is then at
+/// `o`, or comes from it.
 #[unsafe(no_mangle)]
 pub extern "C" fn prob_water_place_eval(
     local: &Local,
@@ -98,11 +141,14 @@ pub extern "C" fn prob_water_place_eval(
     i: &[f32; 3],
     o: &[f32; 3],
     to_light: bool,
-) -> f32 {
-    match &local.own {
-        Some((lobe, normal)) => lobe.on_wave(*i, *o, *normal, parts(bits)),
-        None => local.water.eval(*i, *o, parts(bits), to_light),
+    apart: bool,
+) -> Pair {
+    let parts = parts(bits);
+    if !apart {
+        return Pair(local.eval(*i, *o, parts, to_light), 0.0);
     }
+    let facets = if parts.facets { local.eval(*i, *o, FACETS, to_light) } else { 0.0 };
+    Pair(facets, local.whitecaps(*i, *o, parts, to_light))
 }
 
 /// Density, 1/sr, with which [`prob_water_place_sample`] draws `o`.
@@ -123,23 +169,90 @@ pub extern "C" fn prob_water_place_sample(
     i: &[f32; 3],
     u: &[f32; 3],
     to_light: bool,
-) -> Sample<f32> {
-    let Some((lobe, normal)) = &local.own else {
-        return local.water.sample(*i, *u, parts(bits), to_light);
-    };
-    let mut sample = lobe.sample_parts(*i, *normal, *u, parts(bits));
-    if sample.direction[2] <= 0.0 {
-        sample.pdf = 0.0;
+    apart: bool,
+) -> Apart {
+    let parts = parts(bits);
+    let mut sample = local.sample(*i, *u, parts, to_light);
+    if !apart {
+        return Apart(sample, 0.0);
     }
-    sample.f = lobe.on_wave(*i, sample.direction, *normal, parts(bits));
-    sample
+    let whitecaps = local.whitecaps(*i, sample.direction, parts, to_light);
+    sample.f = if parts.facets { (sample.f - whitecaps).max(0.0) } else { 0.0 };
+    Apart(sample, whitecaps)
 }
 
-/// The value of light from below for a reflectance of 1, and the density of draws by cosine.
+/// The value of light from below for a reflectance of 1 and the index of a lane, where lanes differ, and the density of draws by
+/// cosine.
 #[unsafe(no_mangle)]
-pub extern "C" fn prob_water_place_water_leaving(local: &Local, i: &[f32; 3], o: &[f32; 3]) -> Pair {
-    let [value, density] = local.lobe().water_leaving(*i, *o);
+pub extern "C" fn prob_water_place_water_leaving(
+    local: &Local,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    index: f32,
+) -> Pair {
+    let mut lobe = *local.lobe();
+    lobe.facets.reflectance = local.reflectance(index);
+    let [value, density] = lobe.water_leaving(*i, *o);
     Pair(value, density)
+}
+
+/// m01, m22 and m23 of the facets' Mueller matrix over m00.
+#[unsafe(no_mangle)]
+pub extern "C" fn prob_water_place_polarisation(
+    local: &Local,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    index: f32,
+    shares: &mut [f32; 3],
+) {
+    let [i, o] = [i, o].map(|v| v.map(f64::from));
+    *shares = local.reflectance(index).polarised_between(i, o).map(|m| m as f32);
+}
+
+/// The indices at wavelengths in nm, and the whitecaps' BRDF over the sea's.
+///
+/// # Safety
+/// The arrays hold `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn prob_water_lanes(
+    water: &Water,
+    count: usize,
+    wavelengths: *const f32,
+    indices: *mut f32,
+    whitecaps: *mut f32,
+) {
+    for k in 0..count {
+        // SAFETY: by this function's contract.
+        let wavelength = unsafe { *wavelengths.add(k) };
+        let dispersion = water.single_dispersion.as_ref();
+        let [index, foam] = dispersion.map_or([f32::NAN, 1.0], |dispersion| dispersion.at(wavelength));
+        // SAFETY: by this function's contract.
+        unsafe { (*indices.add(k), *whitecaps.add(k)) = (index, foam) };
+    }
+}
+
+/// The facets' reflectance for the indices of lanes over the sea's.
+///
+/// # Safety
+/// The arrays hold `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn prob_water_place_lane_reflectances(
+    local: &Local,
+    i: &[f32; 3],
+    o: &[f32; 3],
+    count: usize,
+    indices: *const f32,
+    ratios: *mut f32,
+) {
+    // SAFETY: by this function's contract; there is no more than a spectrum's lanes.
+    let given = unsafe { std::slice::from_raw_parts(indices, count.min(LANES)) };
+    let mut all = [1.0; LANES];
+    all[..given.len()].copy_from_slice(given);
+    if let Some(dispersion) = &local.water.single_dispersion {
+        all = dispersion.ratios(all, *i, *o);
+    }
+    // SAFETY: by this function's contract.
+    unsafe { std::slice::from_raw_parts_mut(ratios, given.len()) }.copy_from_slice(&all[..given.len()]);
 }
 
 /// The share of draws for the light from below.

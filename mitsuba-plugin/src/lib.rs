@@ -24,6 +24,17 @@ mod ffi {
         value: f64,
     }
 
+    /// What a variant of Mitsuba has of light and code.
+    #[derive(Clone, Copy)]
+    struct Variant {
+        /// Code is traced.
+        traced: bool,
+        /// Light is polarised.
+        polarised: bool,
+        /// Every lane has a wavelength of its own.
+        spectral: bool,
+    }
+
     /// What a BSDF declares of itself.
     struct Traits {
         /// One drawn sea: every place has its own normal and whitecaps.
@@ -36,6 +47,8 @@ mod ffi {
         varying_footprint: bool,
         /// So does the probability of a whitecap.
         whitecap_texture: bool,
+        /// Index and whitecaps follow the lane.
+        lanes: bool,
         /// The footprint is a pixel's.
         pixel: bool,
         /// Angle of a pixel, radians; 0 where ray differentials tell its size.
@@ -58,6 +71,9 @@ mod ffi {
         Diffuse,
         Wave,
         Normal,
+        Polarisation,
+        Lane,
+        LaneReflectance,
     }
 
     /// `prob_water::kernels::inputs`.
@@ -73,7 +89,9 @@ mod ffi {
         Reflectance = 15,
         Wave = 16,
         Sums = 22,
-        Count = 25,
+        Wavelength = 25,
+        Index = 26,
+        Count = 27,
     }
 
     /// `prob_water::simd::recorded::Operation`.
@@ -139,12 +157,14 @@ mod ffi {
         fn set_text(self: &mut Options, name: &str, value: &str) -> Result<()>;
         /// The parameter is an object of the scene.
         fn set_object(self: &mut Options, name: &str) -> Result<()>;
+        /// Reflectances of the water body from 360 to 830 nm, evenly; none where its chlorophyll is not given.
+        fn water_body(self: &Options) -> Result<Vec<f64>>;
         /// What is set from now on is the shape's that the BSDF lies on.
         fn lend(self: &mut Options) -> Result<()>;
-        /// The sea, for code that is `traced` or not.
-        fn configure(self: &Options, traced: bool) -> Result<Box<Water>>;
+        /// The sea, for a variant.
+        fn configure(self: &Options, variant: Variant) -> Result<Box<Water>>;
         /// The same with other numbers, which stay where they are not refused.
-        fn change(self: &mut Options, numbers: &[Number], traced: bool) -> Result<Box<Water>>;
+        fn change(self: &mut Options, numbers: &[Number], variant: Variant) -> Result<Box<Water>>;
 
         /// A configured sea.
         type Water;
@@ -184,7 +204,7 @@ numbered! {
     ScaleByPowerOf2 Exponent FlipSign Detach Floor Lookup Element
 }
 numbered! {
-    kernel_number, Kernel: Eval Weight Pdf Draw WaterLeavingShare WaterLeaving Diffuse Wave Normal
+    kernel_number, Kernel: Eval Weight Pdf Draw WaterLeavingShare WaterLeaving Diffuse Wave Normal Polarisation Lane LaneReflectance
 }
 
 const _: () = {
@@ -200,6 +220,8 @@ const _: () = {
         Input::Reflectance.repr == inputs::REFLECTANCE,
         Input::Wave.repr == inputs::WAVE,
         Input::Sums.repr == inputs::SUMS,
+        Input::Wavelength.repr == inputs::WAVELENGTH,
+        Input::Index.repr == inputs::INDEX,
         Input::Count.repr == inputs::COUNT,
     ];
     let mut k = 0;

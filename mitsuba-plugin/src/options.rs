@@ -1,7 +1,8 @@
 //! Parameters of a BSDF being collected, and the sea that follows.
 
-use crate::ffi::Number;
-use crate::water::{Varied, Water};
+use crate::ffi::{Number, Variant};
+use crate::water::{Lanes, Varied, Water};
+use prob_water::brdf::water_body::{MOST_CHLOROPHYLL, case_1_reflectance};
 use prob_water::vocabulary::{Builder, ENTRIES, OPTICS, Value};
 use prob_water::{Error, FootprintMeasure, Table};
 use std::path::Path;
@@ -26,6 +27,10 @@ const EXPOSED_WHEN_LENT: [&str; 3] = ["wavelength", "ior", "extinction"];
 /// Beside the vocabulary.
 const PIXEL_ANGLE: &str = "pixel_angle";
 const TABLE: &str = "table";
+const CHLOROPHYLL: &str = "chlorophyll";
+
+/// First and last wavelength, nm, and their step, of [`Options::water_body`].
+const WATER_BODY: [u32; 3] = [360, 830, 5];
 
 type Refused = Box<dyn std::error::Error>;
 
@@ -37,8 +42,14 @@ pub struct Options {
     table: Option<(String, Arc<Table>)>,
     varied: Varied,
     whitecap_texture: bool,
+    /// The index is a spectrum or a texture.
+    ior_texture: bool,
+    /// A wavelength is given: it is that of all lanes.
+    one_wavelength: bool,
     /// Degrees.
     pixel_angle: f64,
+    /// Of the water body, mg/m^3.
+    chlorophyll: Option<f64>,
     /// Words that the BSDF was given itself.
     own: Vec<String>,
     /// Whether a shape lends the sea.
@@ -50,7 +61,7 @@ pub fn options() -> Box<Options> {
 }
 
 pub fn vocabulary() -> Vec<String> {
-    ENTRIES.iter().map(|e| e.name).chain([PIXEL_ANGLE]).map(String::from).collect()
+    ENTRIES.iter().map(|e| e.name).chain([PIXEL_ANGLE, CHLOROPHYLL]).map(String::from).collect()
 }
 
 impl Options {
@@ -76,12 +87,26 @@ impl Options {
         match name {
             "footprint" => self.varied = Varied::Texture,
             "whitecaps" => self.whitecap_texture = true,
+            "ior" => self.ior_texture = true,
             _ => {
                 let allowed = "a plain number, true or false, or a word";
                 return Err(format!("{name} is an object or an array: allowed is {allowed}").into());
             }
         }
         Ok(())
+    }
+
+    /// Reflectances of the water body, in steps of [`WATER_BODY`]; none where its chlorophyll is not given.
+    pub fn water_body(&self) -> Result<Vec<f64>, Refused> {
+        let Some(chlorophyll) = self.chlorophyll else { return Ok(vec![]) };
+        if !(0.0..=MOST_CHLOROPHYLL).contains(&chlorophyll) {
+            let allowed = format!("0 to {MOST_CHLOROPHYLL} mg/m^3");
+            let value = chlorophyll.to_string();
+            return Err(Error::OutOfRange { parameter: CHLOROPHYLL, value, allowed }.into());
+        }
+        let [first, last, step] = WATER_BODY;
+        let all = (0..).map(|k| first + step * k).take_while(|nm| *nm <= last);
+        Ok(all.map(|nm| case_1_reflectance(1e-3 * f64::from(nm), chlorophyll)).collect())
     }
 
     pub fn lend(&mut self) -> Result<(), Refused> {
@@ -96,12 +121,15 @@ impl Options {
     }
 
     fn set(&mut self, name: &str, value: Value) -> Result<(), Refused> {
-        if name == PIXEL_ANGLE {
-            let Value::Number(angle) = value else {
+        for parameter in [PIXEL_ANGLE, CHLOROPHYLL].into_iter().filter(|own| *own == name) {
+            let Value::Number(number) = value else {
                 let (value, expected) = (value.to_string(), "a number");
-                return Err(Error::WrongType { parameter: PIXEL_ANGLE, value, expected }.into());
+                return Err(Error::WrongType { parameter, value, expected }.into());
             };
-            self.pixel_angle = angle;
+            match parameter {
+                PIXEL_ANGLE => self.pixel_angle = number,
+                _ => self.chlorophyll = Some(number),
+            }
             return Ok(());
         }
         self.given(name)?;
@@ -109,6 +137,7 @@ impl Options {
             self.varied = Varied::Pixel;
             return Ok(());
         }
+        self.one_wavelength |= name == "wavelength";
         Ok(self.sea.set(name, &value)?)
     }
 
@@ -122,7 +151,7 @@ impl Options {
         Ok(())
     }
 
-    pub fn configure(&self, traced: bool) -> Result<Box<Water>, Refused> {
+    pub fn configure(&self, variant: Variant) -> Result<Box<Water>, Refused> {
         let angle = self.pixel_angle;
         let is_pixel = self.varied == Varied::Pixel;
         if !(0.0..90.0).contains(&angle) || (angle > 0.0 && !is_pixel) {
@@ -131,7 +160,15 @@ impl Options {
                 Error::OutOfRange { parameter: PIXEL_ANGLE, value: angle.to_string(), allowed }.into()
             );
         }
-        let mut water = Water::new(&self.sea, self.varied, self.table.clone(), self.whitecap_texture)?;
+        let follows = variant.spectral && !self.one_wavelength;
+        let lanes = match (self.ior_texture, follows) {
+            (false, false) => Lanes::Alike,
+            (true, false) => Lanes::Indices,
+            (_, true) => Lanes::Wavelengths,
+        };
+        let mut water = Water::new(&self.sea, self.varied, self.table.clone(), self.whitecap_texture, lanes)?;
+        water.polarised = variant.polarised;
+        let traced = variant.traced;
         water.pixel_angle = angle.to_radians();
         if is_pixel {
             water.measure = FootprintMeasure::Side;
@@ -151,7 +188,7 @@ impl Options {
         Ok(Box::new(water))
     }
 
-    pub fn change(&mut self, numbers: &[Number], traced: bool) -> Result<Box<Water>, Refused> {
+    pub fn change(&mut self, numbers: &[Number], variant: Variant) -> Result<Box<Water>, Refused> {
         let mut changed = self.clone();
         let now = self.sea.parameters()?;
         for Number { name, value } in numbers {
@@ -159,7 +196,7 @@ impl Options {
                 changed.sea.set(name, &Value::Number(*value))?;
             }
         }
-        let water = changed.configure(traced)?;
+        let water = changed.configure(variant)?;
         *self = changed;
         Ok(water)
     }

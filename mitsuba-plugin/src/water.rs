@@ -2,12 +2,12 @@
 
 use crate::ffi;
 use crate::operation_number;
-use prob_water::kernels::{Mean, Places};
+use prob_water::kernels::{Light, Mean, Places};
 use prob_water::simd::recorded::Instruction;
 use prob_water::vocabulary::{Builder, Value};
 use prob_water::{
-    EmpiricalLobe, EnsembleLobe, Error, FacetTable, FootprintMeasure, InstanceLobe, Kernels, Lobe, Surface,
-    Table,
+    Dispersion, EmpiricalLobe, EnsembleLobe, Error, FacetTable, FootprintMeasure, InstanceLobe, Kernels,
+    Lobe, Surface, Table,
 };
 use std::sync::Arc;
 
@@ -19,6 +19,18 @@ pub enum Varied {
     Nowhere,
     Texture,
     Pixel,
+}
+
+/// What differs between the lanes of a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Lanes {
+    /// Nothing.
+    #[default]
+    Alike,
+    /// The index, which comes with them.
+    Indices,
+    /// The wavelength: whitecaps and, unless it comes with them, the index.
+    Wavelengths,
 }
 
 /// A configured sea.
@@ -36,6 +48,11 @@ pub struct Water {
     table: Option<String>,
     varied: Varied,
     whitecap_texture: bool,
+    /// Where lanes differ.
+    dispersion: Option<Dispersion<f64>>,
+    pub single_dispersion: Option<Dispersion<f32>>,
+    /// Light is polarised.
+    pub polarised: bool,
     /// Radians.
     pub pixel_angle: f64,
     /// What is measured where the footprint varies.
@@ -60,6 +77,7 @@ impl Water {
         varied: Varied,
         table: Option<(String, Arc<Table>)>,
         whitecap_texture: bool,
+        lanes: Lanes,
     ) -> Result<Self, Error> {
         let surfaces = [Surface::Flat, Surface::Instance, Surface::Ensemble, Surface::Empirical];
         let water = sea.parameters()?.configure()?.on(&surfaces)?;
@@ -106,6 +124,8 @@ impl Water {
         };
         let facets = varies.then(|| FacetTable::new(&water));
         let single_facets = facets.as_ref().map(|table| table.cast());
+        let dispersion = (lanes != Lanes::Alike).then(|| water.dispersion(lanes == Lanes::Indices));
+        let single_dispersion = dispersion.as_ref().map(|dispersion| dispersion.cast());
         Ok(Self {
             water,
             precise: lobe,
@@ -116,6 +136,9 @@ impl Water {
             table: name,
             varied,
             whitecap_texture,
+            dispersion,
+            single_dispersion,
+            polarised: false,
             pixel_angle: 0.0,
             measure: water.parameters.footprint_measure,
             exposed: &[],
@@ -148,6 +171,7 @@ impl Water {
             whitecaps: whitecaps || self.whitecap_texture,
             varying_footprint: self.facets.is_some(),
             whitecap_texture: self.whitecap_texture,
+            lanes: self.dispersion.is_some(),
             pixel: self.varied == Varied::Pixel,
             pixel_angle: self.pixel_angle as f32,
             diameter: self.measure.diameter() as f32,
@@ -164,6 +188,7 @@ impl Water {
         let matters = |name: &str| match name {
             "footprint" => self.facets.is_none(),
             "time" => matches!(self.waves, Waves::Drawn(_)),
+            "wavelength" => self.dispersion.is_none(),
             _ => true,
         };
         let number = |name: &&str| match self.water.parameters.get(name) {
@@ -190,7 +215,8 @@ impl Water {
             whitecap: self.whitecap_texture || drawn.is_some(),
             footprint: self.facets.as_ref(),
         };
-        let Kernels { recording, programs } = Kernels::new(&self.precise, mean, places);
+        let light = Light { polarised: self.polarised, dispersion: self.dispersion.as_ref() };
+        let Kernels { recording, programs } = Kernels::new(&self.precise, mean, places, light);
         let word = |(operation, [a, b, c]): &Instruction| [operation_number(*operation), *a, *b, *c];
         ffi::Kernels {
             coefficients: recording.coefficients,

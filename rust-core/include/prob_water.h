@@ -119,6 +119,20 @@ enum ProbWaterStatus prob_water_eval(const struct ProbWater *sea,
                                      const double *normals,
                                      double *f);
 
+// The Mueller matrix of every row, 1/sr, 16 numbers row by row, of which the first is f: the BRDF of polarised light. The first axes
+// of Stokes vectors lie in the planes of the vertical and the directions, towards larger angles from the vertical; Q counts along
+// them, U along 45 degrees counter-clockwise for whom the light reaches. Facets reflect by Fresnel's equations, scaled to
+// the parameters' reflectance; whitecaps depolarise.
+//
+// # Safety
+// As `prob_water_eval`, but that `matrices` holds `16 rows` numbers.
+enum ProbWaterStatus prob_water_mueller(const struct ProbWater *sea,
+                                        size_t rows,
+                                        const double *to_source,
+                                        const double *to_observer,
+                                        const double *normals,
+                                        double *matrices);
+
 // `prob_water_eval` in float32.
 //
 // # Safety

@@ -52,7 +52,10 @@ pub mod surface;
 
 pub use api::batch;
 pub use api::kernels::{self, Kernels};
-pub use brdf::{Fresnel, Lobe, Sample, SlopeMeasure, SlopeStatistics, fresnel, sampling, shadowing, slopes};
+pub use brdf::{
+    Dispersion, Fresnel, Lobe, Reflectance, Sample, SlopeMeasure, SlopeStatistics, fresnel, sampling,
+    shadowing, slopes,
+};
 pub use config::{
     Average, FootprintMeasure, Hiding, OffPlaneModel, Parameters, SlopeBudget, Surface, Water, vocabulary,
 };

@@ -27,6 +27,24 @@ def value(mi, bsdf, context=None, i=I, o=O, **mask):
     return float(np.array(result).ravel()[0])
 
 
+def matrix(mi, bsdf, i, o, context, wavelengths=None):
+    """f cos(theta_o) as Mueller matrices, the lanes last and one of them kept unless wavelengths in nm are given; a number in
+    variants without polarisation."""
+    si = interaction(mi, i)
+    if wavelengths is not None:
+        si.wavelengths = wavelengths
+    value = np.array(bsdf.eval(context, si, mi.Vector3f([float(x) for x in o])), dtype=np.float64)
+    value = value.reshape(*(4, 4)[: 2 * mi.is_polarized], -1)
+    return value if wavelengths is not None else value[..., 0]
+
+
+def draw_one(mi, bsdf, i, u, context):
+    """Direction, density and weight of one draw, the weight as `matrix` has it."""
+    sample, weight = bsdf.sample(context, interaction(mi, i), float(u[0]), mi.Point2f(float(u[1]), float(u[2])))
+    weight = np.array(weight, dtype=np.float64).reshape(*(4, 4)[: 2 * mi.is_polarized], -1)[..., 0]
+    return np.array(sample.wo).ravel(), number(sample.pdf), weight
+
+
 def number(x):
     """The first of an array's numbers."""
     return float(np.array(x).ravel()[0])

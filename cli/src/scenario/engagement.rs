@@ -3,8 +3,10 @@
 use crate::toml_file::Item;
 use prob_water::{Aim, Beam, Engagement, Error};
 
-const KEYS: [&str; 8] =
-    ["time", "times", "laser", "target", "direction", "observers", "divergence", "aperture"];
+const KEYS: [&str; 9] =
+    ["time", "times", "laser", "target", "direction", "observers", "divergence", "aperture", STOKES];
+/// The one that says how the beam is polarised.
+pub const STOKES: &str = "stokes";
 
 /// The engagements of one entry, one for every time, s; `now` is the time where none is given.
 pub fn read(entry: &Item, now: f64) -> Result<Vec<Engagement>, String> {
@@ -42,10 +44,14 @@ pub fn read(entry: &Item, now: f64) -> Result<Vec<Engagement>, String> {
         (None, None) => None,
         (Some(divergence), aperture) => Some((divergence.number()?, aperture.map_or(Ok(0.0), Item::number)?)),
     };
+    let stokes = find(STOKES).map(stokes).transpose()?;
 
     let at = |(i, time): (usize, &f64)| {
         let observers: Vec<_> = observers.iter().map(|track| track[i]).collect();
-        let engagement = Engagement::new(*time, laser[i], aim(way[i]), &observers)?;
+        let mut engagement = Engagement::new(*time, laser[i], aim(way[i]), &observers)?;
+        if let Some(stokes) = stokes {
+            engagement = engagement.with_stokes(stokes)?;
+        }
         Ok(match beam {
             Some((divergence, aperture)) => engagement.with_beam(Beam::new(divergence, aperture)?),
             None => engagement,
@@ -58,6 +64,12 @@ pub fn read(entry: &Item, now: f64) -> Result<Vec<Engagement>, String> {
         given.unwrap_or(entry).refuse(error)
     };
     times.iter().enumerate().map(at).collect::<Result<_, _>>().map_err(refuse)
+}
+
+/// The four numbers of a Stokes vector.
+fn stokes(item: &Item) -> Result<[f64; 4], String> {
+    let numbers = item.list("[I, Q, U, V]")?.iter().map(Item::number).collect::<Result<Vec<_>, _>>()?;
+    numbers.try_into().map_err(|_| item.refuse("stokes is not [I, Q, U, V]"))
 }
 
 /// Positions, one for every time: a fixed one repeats. `count` is that of a trajectory's times.

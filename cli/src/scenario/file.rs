@@ -17,6 +17,8 @@ pub struct Scenario {
     pub parts: Vec<Part>,
     /// Whether footprints are other than the sea's own.
     pub own_footprints: bool,
+    /// Whether a beam is polarised.
+    pub polarised: bool,
     /// Values of f, 1/sr, whose exceedance is asked for.
     pub limits: Vec<f64>,
     /// The table that the file names.
@@ -67,7 +69,9 @@ impl Scenario {
         let water = model.water(flags, &[Surface::Instance, Surface::Empirical])?;
         settings::check(&own, water.parameters.surface)?;
         let mut all = Vec::new();
+        let mut polarised = false;
         for place in &entries {
+            polarised |= place.table()?.iter().any(|item| item.name == engagement::STOKES);
             for engagement in engagement::read(place, water.parameters.time)? {
                 let spot = Spot::new(&engagement, &water.parameters, settings.spot)
                     .map_err(|e| model.refuse(flags, &e, Some(place)))?;
@@ -91,6 +95,6 @@ impl Scenario {
                 eprintln!("prob-water: warning: {warning}");
             }
         }
-        Ok(Self { water, parts, own_footprints, limits: settings.limits, table: own_table })
+        Ok(Self { water, parts, own_footprints, polarised, limits: settings.limits, table: own_table })
     }
 }

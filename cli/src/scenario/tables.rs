@@ -5,6 +5,7 @@ use super::part::Method;
 use crate::table::{self, Cell, Table};
 use crate::{Outcome, Stop, files};
 use clap::ArgMatches;
+use prob_water::brdf::polarised::degree_and_angle;
 use prob_water::statistics::FEWEST_EFFECTIVE;
 use prob_water::statistics::{Samples, Sighting};
 use prob_water::{Engagement, Statistics};
@@ -26,6 +27,8 @@ const STATISTICS: [&str; 14] = [
     "whitecap",
 ];
 const TRUST: [&str; 5] = ["effective", "mean_upper", "method", "mean_error", "share_error"];
+/// Of what is seen of a polarised beam: from 0 to 1, and degrees from the plane of the vertical and the observer's direction.
+const POLARISATION: [&str; 2] = ["degree_of_polarisation", "angle_of_polarisation"];
 const INSTANCES: [&str; 14] = [
     "time", "observer", "instance", "f", "cos_r", "obscured", "whitecap", "x", "y", "z", "nx", "ny", "nz",
     "weight",
@@ -44,6 +47,8 @@ pub struct Tables {
     seed: u64,
     /// D of the rows that come, m, where rows tell it.
     footprint: Option<f64>,
+    /// A beam is polarised.
+    polarised: bool,
     rows: u64,
     few: Notice,
     wrong: Notice,
@@ -128,6 +133,7 @@ impl Tables {
         let limits = scenario.limits.iter().map(|limit| format!("p_over_{limit}"));
         let outside = matches!(scenario.parts[0].method, Method::Table(..)).then(|| "outside".to_owned());
         let footprint = scenario.own_footprints.then(|| "footprint".to_owned());
+        let polarisation = POLARISATION.into_iter().filter(|_| scenario.polarised).map(String::from);
         let upper = scenario.limits.iter().map(|limit| format!("p_over_{limit}_upper"));
         let parameters = &scenario.water.parameters;
         Ok(Self {
@@ -140,12 +146,14 @@ impl Tables {
                     .chain(upper)
                     .chain(names(&TRUST))
                     .chain(footprint)
+                    .chain(polarisation)
                     .collect(),
             )?),
             instances: instances_out.then(|| open(other, names(&INSTANCES))).transpose()?,
             readings: parameters.get("readings").map(|value| value.to_string()).unwrap_or_default(),
             seed: parameters.seed,
             footprint: scenario.own_footprints.then_some(scenario.water.footprint),
+            polarised: scenario.polarised,
             rows: 0,
             few: Notice::default(),
             wrong: Notice::default(),
@@ -178,17 +186,25 @@ impl Tables {
         limits: &[f64],
     ) -> Outcome {
         let by = if samples.by_slopes(i, o)? { By::Slopes } else { By::Draws };
-        self.statistics(engagement, observer, &samples.statistics(i, o, limits)?, by)?;
+        let position = engagement.observers()[observer];
+        let stokes = self.polarised.then(|| samples.stokes(i, o, engagement, position)).transpose()?;
+        self.statistics(engagement, observer, &samples.statistics(i, o, limits)?, by, stokes)?;
         self.instances(engagement, observer, samples.of(i, o)?)
     }
 
-    /// What an observer sees of all instances.
+    /// Whether the Stokes vectors of rows are asked for.
+    pub fn polarised(&self) -> bool {
+        self.polarised
+    }
+
+    /// What an observer sees of all instances, with the mean Stokes vector where that is asked for.
     pub fn statistics(
         &mut self,
         engagement: &Engagement,
         observer: usize,
         s: &Statistics,
         by: By,
+        stokes: Option<[f64; 4]>,
     ) -> Outcome {
         self.rows += 1;
         self.few.add(s.effective < FEWEST_EFFECTIVE, engagement, observer);
@@ -209,6 +225,7 @@ impl Tables {
         row.push(Cell::Text(by.name()));
         row.extend([s.mean_error, s.share_error].map(Cell::Number));
         row.extend(self.footprint.map(Cell::Number));
+        row.extend(stokes.into_iter().flat_map(degree_and_angle).map(Cell::Number));
         row.extend(origin(&self.readings, self.seed));
         match table.row(&row) {
             Err(Stop::ReaderLeft) if self.instances.is_some() => self.statistics = None,

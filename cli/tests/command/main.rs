@@ -8,6 +8,7 @@ mod files;
 mod from;
 #[cfg(unix)]
 mod guide;
+mod polarised;
 mod refusals;
 mod scenario;
 mod scenario_refusals;

@@ -8,7 +8,8 @@ use std::ffi::{CStr, CString, c_char, c_double, c_float};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::batch::{Batched, Columns, Coordinates, Quantity, Rows, check_units};
-use crate::brdf::Lobe;
+use crate::brdf::polarised::mueller;
+use crate::brdf::{Lobe, Parts};
 use crate::config::vocabulary::{Builder, Value};
 use crate::config::{Surface, Water};
 use crate::empirical::{EmpiricalLobe, Table};
@@ -386,6 +387,52 @@ pub unsafe extern "C" fn prob_water_eval(
     unsafe {
         with_sea(sea, |s| batch(s, &s.lobe, Quantity::Brdf, rows, [to_source, to_observer, normals], f))
     }
+}
+
+/// The Mueller matrix of every row, 1/sr, 16 numbers row by row, of which the first is f: the BRDF of polarised light. The first axes
+/// of Stokes vectors lie in the planes of the vertical and the directions, towards larger angles from the vertical; Q counts along
+/// them, U along 45 degrees counter-clockwise for whom the light reaches. Facets reflect by Fresnel's equations, scaled to
+/// the parameters' reflectance; whitecaps depolarise.
+///
+/// # Safety
+/// As `prob_water_eval`, but that `matrices` holds `16 rows` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn prob_water_mueller(
+    sea: *const ProbWater,
+    rows: usize,
+    to_source: *const c_double,
+    to_observer: *const c_double,
+    normals: *const c_double,
+    matrices: *mut c_double,
+) -> ProbWaterStatus {
+    let body = |sea: &ProbWater| {
+        let mut f = vec![0.0; rows];
+        let inputs = [to_source, to_observer, normals];
+        // SAFETY: by this function's contract.
+        unsafe { batch(sea, &sea.lobe, Quantity::Brdf, rows, inputs, f.as_mut_ptr())? };
+        // SAFETY: by this function's contract.
+        let (i, o, out) = unsafe {
+            (
+                triples(to_source, rows, "to_source")?,
+                triples(to_observer, rows, "to_observer")?,
+                output(matrices, 16 * rows, "matrices")?,
+            )
+        };
+        // SAFETY: by this function's contract.
+        let n = if normals.is_null() { None } else { Some(unsafe { triples(normals, rows, "normals")? }) };
+        for (k, (f, out)) in f.iter().zip(out.chunks_exact_mut(16)).enumerate() {
+            let parts = Parts { facets: false, whitecaps: true };
+            let foam = match &sea.empirical {
+                Some(table) => table.eval_parts(i[k], o[k], parts),
+                None => sea.lobe.eval_parts(i[k], o[k], n.map(|n| n[k]), parts),
+            };
+            let matrix = mueller(&sea.lobe.facets.reflectance, i[k], o[k], [f - foam, foam]);
+            out.copy_from_slice(matrix.as_flattened());
+        }
+        Ok(())
+    };
+    // SAFETY: by this function's contract.
+    unsafe { with_sea(sea, body) }
 }
 
 /// `prob_water_eval` in float32.

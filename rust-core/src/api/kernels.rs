@@ -1,6 +1,6 @@
 //! The closed forms as programs for a renderer that compiles its own code: recorded from the same text that everything else runs.
 
-use crate::brdf::{Lobe, Parts};
+use crate::brdf::{Dispersion, Lobe, Parts};
 use crate::empirical::FineGrid;
 use crate::numeric::Real;
 use crate::numeric::real::Extended;
@@ -30,6 +30,12 @@ pub enum Kernel {
     Wave,
     /// The wave normal and the probability of a whitecap that follow.
     Normal,
+    /// m01, m22 and m23 of the facets' Mueller matrix over m00, [`crate::Reflectance::polarised`].
+    Polarisation,
+    /// The index and the whitecaps' BRDF over the sea's, at a wavelength.
+    Lane,
+    /// The facets' reflectance for an index over the sea's.
+    LaneReflectance,
 }
 
 impl Kernel {
@@ -37,7 +43,7 @@ impl Kernel {
     const OF_PARTS: [Self; 5] = [Self::Eval, Self::Weight, Self::Pdf, Self::Draw, Self::WaterLeavingShare];
 
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::Eval,
         Self::Weight,
         Self::Pdf,
@@ -47,6 +53,9 @@ impl Kernel {
         Self::Diffuse,
         Self::Wave,
         Self::Normal,
+        Self::Polarisation,
+        Self::Lane,
+        Self::LaneReflectance,
     ];
 
     /// The number of its program among a sea's, for the parts that take part (of those [`Kernel::Wave`] knows nothing).
@@ -92,8 +101,12 @@ pub mod inputs {
     pub const WAVE: u32 = 16;
     /// Sums over the waves, of [`WaveTerm::add_to`].
     pub const SUMS: u32 = 22;
+    /// A wavelength, nm.
+    pub const WAVELENGTH: u32 = 25;
+    /// The index of a wavelength, where there are many.
+    pub const INDEX: u32 = 26;
     /// How many.
-    pub const COUNT: u32 = 25;
+    pub const COUNT: u32 = 27;
 }
 
 /// What differs from place to place.
@@ -109,6 +122,25 @@ pub struct Places<'a> {
     pub whitecap: bool,
     /// Facets for a footprint.
     pub footprint: Option<&'a FacetTable<f64>>,
+}
+
+/// What is told of light; what is not asked for has empty programs.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Light<'a> {
+    /// It is polarised.
+    pub polarised: bool,
+    /// It has many wavelengths: an index is among the inputs.
+    pub dispersion: Option<&'a Dispersion<f64>>,
+}
+
+impl Light<'_> {
+    fn has(&self, kernel: Kernel) -> bool {
+        match kernel {
+            Kernel::Polarisation => self.polarised,
+            Kernel::Lane | Kernel::LaneReflectance => self.dispersion.is_some(),
+            _ => true,
+        }
+    }
 }
 
 /// What is evaluated.
@@ -133,13 +165,17 @@ pub struct Kernels {
 
 impl Kernels {
     /// Of a lobe; where there is another mean than its own, it draws for this one.
-    pub fn new(lobe: &Lobe<f64>, mean: Mean, places: Places) -> Self {
+    pub fn new(lobe: &Lobe<f64>, mean: Mean, places: Places, light: Light) -> Self {
         let mut recording = Recording::default();
         let mut programs = Vec::new();
         let mut record = |kernel: Kernel, parts: Parts| {
-            programs.push(recording.record(inputs::COUNT, |x| {
-                Sea::new(lobe, mean, places, Inputs(x)).run(kernel, parts, Inputs(x))
-            }));
+            programs.push(if light.has(kernel) {
+                recording.record(inputs::COUNT, |x| {
+                    Sea::new(lobe, mean, places, light, Inputs(x)).run(kernel, parts, Inputs(x))
+                })
+            } else {
+                Program::default()
+            });
         };
         for parts in PARTS {
             for kernel in Kernel::OF_PARTS {
@@ -182,10 +218,11 @@ struct Sea {
     onset: Option<Onset<Traced>>,
     onsets: Option<OnsetTable<Traced>>,
     log2_footprint: Option<Traced>,
+    dispersion: Option<Dispersion<Traced>>,
 }
 
 impl Sea {
-    fn new(lobe: &Lobe<f64>, mean: Mean, places: Places, x: Inputs) -> Self {
+    fn new(lobe: &Lobe<f64>, mean: Mean, places: Places, light: Light, x: Inputs) -> Self {
         let mut lobe: Lobe<Traced> = lobe.cast();
         // Means need no digits that turning takes: where the wind comes from is data.
         let mean = match mean {
@@ -217,7 +254,17 @@ impl Sea {
             onset: places.onset.map(|onset| onset.cast()),
             onsets: places.onsets.map(OnsetTable::cast),
             log2_footprint: places.footprint.map(|_| x.number(inputs::FOOTPRINT)),
+            dispersion: light.dispersion.map(Dispersion::cast),
         }
+    }
+
+    /// The lobe for the index among the inputs, if there is one.
+    fn lobe_of_lane(&self, x: Inputs) -> Lobe<Traced> {
+        let mut lobe = self.lobe;
+        if let Some(dispersion) = &self.dispersion {
+            lobe.facets.reflectance = dispersion.reflectance(x.number(inputs::INDEX));
+        }
+        lobe
     }
 
     fn run(&self, kernel: Kernel, parts: Parts, x: Inputs) -> Vec<Traced> {
@@ -234,7 +281,7 @@ impl Sea {
             Kernel::WaterLeavingShare => {
                 vec![self.lobe.water_leaving_share(i, x.number(inputs::REFLECTANCE), parts)]
             }
-            Kernel::WaterLeaving => self.lobe.water_leaving(i, o).to_vec(),
+            Kernel::WaterLeaving => self.lobe_of_lane(x).water_leaving(i, o).to_vec(),
             Kernel::Diffuse => vec![self.lobe.whitecap_albedo(), self.lobe.smooth_fraction],
             Kernel::Wave => {
                 let wave = |k| x.number(inputs::WAVE + k);
@@ -257,6 +304,15 @@ impl Sea {
                 let whitecap = onset.map_or(Traced::of(0.0), |onset| onset.probability(-fall));
                 vec![down_x * z, down_y * z, z, whitecap]
             }
+            Kernel::Polarisation => self.lobe_of_lane(x).facets.reflectance.polarised_between(i, o).to_vec(),
+            Kernel::Lane => match &self.dispersion {
+                Some(dispersion) => dispersion.at(x.number(inputs::WAVELENGTH)).to_vec(),
+                None => vec![],
+            },
+            Kernel::LaneReflectance => match &self.dispersion {
+                Some(dispersion) => dispersion.ratios([x.number(inputs::INDEX)], i, o).to_vec(),
+                None => vec![],
+            },
         }
     }
 

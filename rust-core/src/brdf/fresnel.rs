@@ -106,13 +106,7 @@ pub struct Reflectance<T> {
 impl Reflectance<f64> {
     /// Of a complex refractive index `n + i k`.
     pub fn new([n, k]: [f64; 2], fresnel: Fresnel) -> Self {
-        Self {
-            normal: normal_reflectance(n, k),
-            excess: n * n - k * k - 1.0,
-            absorption: (2.0 * n * k).powi(2),
-            exact: fresnel == Fresnel::Exact,
-            absorbing: k > 0.0,
-        }
+        Self::of_index(n, (k > 0.0).then_some(k), fresnel == Fresnel::Exact)
     }
 
     /// The same in another number type.
@@ -128,6 +122,22 @@ impl Reflectance<f64> {
 }
 
 impl<T: Real> Reflectance<T> {
+    /// Of an index n and, where water absorbs, an extinction coefficient k.
+    #[inline(always)]
+    pub(crate) fn of_index(n: T, k: Option<T>, exact: bool) -> Self {
+        let (zero, one) = (T::of(0.0), T::of(1.0));
+        let [less, more] = [n - one, n + one];
+        let (mut normal, mut excess, mut absorption) = (less / more, n * n, zero);
+        normal = normal * normal;
+        if let Some(k) = k {
+            let (k2, twice) = (k * k, T::of(2.0) * n * k);
+            normal = (less * less + k2) / (more * more + k2);
+            excess = excess - k2;
+            absorption = twice * twice;
+        }
+        Self { normal, excess: excess - one, absorption, exact, absorbing: k.is_some() }
+    }
+
     /// rho(zeta) for the cosine of zeta.
     #[inline(always)]
     pub fn eval(&self, cos: T) -> T {

@@ -484,11 +484,15 @@ impl<T: Real> Lobe<T> {
         n: Option<Vec3<T>>,
         parts: Parts,
     ) -> T {
-        let g = self.facets.geometry::<E>(i, o, n);
-        let mut f = T::of(0.0);
-        if parts.facets {
-            f = self.smooth_fraction * self.facets.eval_above(&g, n.is_none());
+        if !parts.facets {
+            let whitecaps = self.whitecap_fraction * self.whitecap_brdf;
+            let f = if parts.whitecaps { whitecaps } else { T::of(0.0) };
+            let cos = n.map_or([i[2], o[2]], |n| [cosine::<T, E>(i, n), cosine::<T, E>(o, n)]);
+            let upper = T::lt(T::of(0.0), cos[0]) & T::lt(T::of(0.0), cos[1]);
+            return defined(i, o, cos, T::select(upper, f, T::of(0.0)));
         }
+        let g = self.facets.geometry::<E>(i, o, n);
+        let mut f = self.smooth_fraction * self.facets.eval_above(&g, n.is_none());
         if parts.whitecaps {
             f = self.whitecap_fraction.mul_add(self.whitecap_brdf, f);
         }

@@ -5,7 +5,7 @@ use super::slope_split::SlopeSplit;
 use super::vocabulary::check;
 use crate::brdf::lobe::steep_gain;
 use crate::brdf::slopes::GramCharlier;
-use crate::brdf::{Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing};
+use crate::brdf::{Dispersion, Facets, Lobe, Reflectance, SlopeMeasure, WindAxes, fresnel, shadowing};
 use crate::error::{Error, refuse};
 use crate::readings::Readings;
 use crate::sea::{Spectrum, SpectrumModel, WindProfile, whitecap};
@@ -124,6 +124,17 @@ impl Parameters {
         Ok([ior, fresnel::relevant_extinction(ior, extinction)])
     }
 
+    /// The index n at a wavelength in micrometres that is not the parameters' own: an `ior` is that of all; Quan and Fry's law is
+    /// held beyond its range.
+    fn index_at(&self, wavelength: f64) -> f64 {
+        let [first, last] = fresnel::QUAN_FRY;
+        let own = Self {
+            wavelength: if self.temperature.is_some() { wavelength.clamp(first, last) } else { wavelength },
+            ..*self
+        };
+        own.index().map_or(f64::NAN, |[n, _]| n)
+    }
+
     /// The facets of a wind, an index and slope variances.
     pub(crate) fn facets(&self, wind: &WindProfile, index: [f64; 2], variances: [f64; 2]) -> Facets<f64> {
         let [sigma_u, sigma_c] = variances.map(f64::sqrt);
@@ -162,5 +173,18 @@ impl Parameters {
         let needs_bound = facets.own_shadows || facets.needs_bound();
         facets.bounded = self.shadowing && !facets.printed_shadowing() && needs_bound;
         facets
+    }
+}
+
+impl Water {
+    /// Index and whitecaps by wavelength, for light that is seen, beside the lobe at the parameters' wavelength. The extinction
+    /// coefficient is the lobe's; by itself it is 0 in the visible. With `fixed` whitecaps are the lobe's as well.
+    pub fn dispersion(&self, fixed: bool) -> Dispersion<f64> {
+        let whitecaps = |wavelength| {
+            if fixed { 1.0 } else { whitecap::brdf(wavelength) / self.lobe.whitecap_brdf }
+        };
+        Dispersion::new(self.lobe.facets.reflectance, self.extinction, |wavelength| {
+            [self.parameters.index_at(wavelength), whitecaps(wavelength)]
+        })
     }
 }

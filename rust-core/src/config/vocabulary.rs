@@ -360,7 +360,7 @@ pub const ENTRIES: [Entry; 37] = [
         unit: "micrometres",
         default: "0.55",
         allowed: "0.2 to 200 micrometres",
-        help: "wavelength of the refractive index and the whitecaps",
+        help: "wavelength of the refractive index and the whitecaps; spectral variants of Mitsuba take their own unless it is given",
         surfaces: ALL,
         kind: Kind::Number,
         access: field!(number, wavelength, |x| (WAVELENGTHS[0]..=WAVELENGTHS[1]).contains(&x)),

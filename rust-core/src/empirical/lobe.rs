@@ -32,7 +32,7 @@ use super::fine_grid::{AZIMUTHS, DENSITIES, FineGrid, INCIDENCES, Place, SHARES,
 use super::reference::Moments;
 use super::table::Table;
 use crate::brdf::lobe::defined;
-use crate::brdf::{Lobe, Parts};
+use crate::brdf::{Lobe, Parts, polarised};
 use crate::config::{OffPlaneModel, Surface, Water};
 use crate::error::Error;
 use crate::numeric::Vec3;
@@ -174,6 +174,13 @@ impl EmpiricalLobe {
     /// f of some of its parts, 1/sr.
     pub fn eval_parts<T: Gridded>(&self, i: Vec3<T>, o: Vec3<T>, parts: Parts) -> T {
         T::grid(self).eval(i, o, parts)
+    }
+
+    /// The Stokes vector that is seen of another one, 1/sr, with f of [`EmpiricalLobe::estimate`].
+    pub fn stokes(&self, i: [f64; 3], o: [f64; 3], stokes: [f64; 4]) -> [f64; 4] {
+        let f = self.estimate(i, o).mean;
+        let foam = self.eval_parts(i, o, Parts { facets: false, whitecaps: true }).min(f);
+        polarised::seen(&self.sampler.facets.reflectance, i, o, [f - foam, foam], stokes)
     }
 
     /// f with its standard uncertainty (Eqs. 90-91), for unit vectors to source and observer.

@@ -115,9 +115,14 @@ impl InstanceLobe {
     /// `f cos(theta_o)`, 1/sr, at a place in m, for unit vectors to source and observer; 0 at or below the horizon,
     /// NaN in, NaN out.
     pub fn eval(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2]) -> f64 {
+        self.eval_parts(i, o, place, Parts::ALL)
+    }
+
+    /// The same of some of its parts, 1/sr.
+    pub fn eval_parts(&self, i: [f64; 3], o: [f64; 3], place: [f64; 2], parts: Parts) -> f64 {
         let local = self.local(place, None);
         let lobe = self.water.lobe.with_whitecaps(local.whitecap);
-        lobe.on_wave(i, o, local.normal, Parts::ALL)
+        lobe.on_wave(i, o, local.normal, parts)
     }
 }
 

@@ -11,6 +11,9 @@ pub const FLATTEST_BEAM: f64 = 1.745e-5;
 /// Coordinates reach to this far from 0, m.
 pub const FARTHEST: f64 = 1e9;
 
+/// Light without polarisation, as a Stokes vector.
+const UNPOLARISED: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+
 /// Where the laser points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aim {
@@ -28,7 +31,11 @@ pub struct Engagement {
     direction: [f64; 3],
     observers: Vec<[f64; 3]>,
     beam: Option<Beam>,
+    stokes: [f64; 4],
 }
+
+/// A Stokes vector may be polarised by this much more than wholly, for its digits.
+const STOKES_TOLERANCE: f64 = 1e-6;
 
 impl Engagement {
     /// Time in s, positions in m: all finite, laser and observers above the mean surface, the beam downwards.
@@ -69,7 +76,8 @@ impl Engagement {
             position("observers", *observer)?;
         }
         let direction = direction.into();
-        let engagement = Self { time, laser, direction, observers: observers.into(), beam: None };
+        let engagement =
+            Self { time, laser, direction, observers: observers.into(), beam: None, stokes: UNPOLARISED };
         if !within(engagement.target()) {
             return refuse(name, shown(given), "a beam that meets the water at most 1e9 m from 0");
         }
@@ -87,6 +95,29 @@ impl Engagement {
     /// The same with a beam that widens on its way, which gives the footprint: [`crate::Spot`].
     pub fn with_beam(self, beam: Beam) -> Self {
         Self { beam: Some(beam), ..self }
+    }
+
+    /// The same with polarised light: (I, Q, U, V) of the beam, whose first axis is [`crate::brdf::polarised::mueller`]'s, in the
+    /// plane of the beam and the vertical. I counts 1: the others are taken over it.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] where I is not above 0, or the rest of it is longer.
+    pub fn with_stokes(self, stokes: [f64; 4]) -> Result<Self, Error> {
+        let [i, q, u, v] = stokes;
+        let stokes = [1.0, q / i, u / i, v / i];
+        if !(i > 0.0
+            && stokes.iter().all(|x| x.is_finite())
+            && (q / i).hypot(u / i).hypot(v / i) <= 1.0 + STOKES_TOLERANCE)
+        {
+            let given = format!("[{i}, {q}, {u}, {v}]");
+            return refuse("stokes", given, "[I, Q, U, V] with I above 0 and Q^2 + U^2 + V^2 up to I^2");
+        }
+        Ok(Self { stokes, ..self })
+    }
+
+    /// The beam's Stokes vector over its first number.
+    pub fn stokes(&self) -> [f64; 4] {
+        self.stokes
     }
 
     /// The same with the observers whose numbers are kept.

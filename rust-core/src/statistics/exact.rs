@@ -17,6 +17,7 @@ use super::engagement::Engagement;
 use super::facet_density::{Cell, FacetDensity};
 use super::slope_density::{Point, Slopes, WindFrame};
 use super::summary::{QUANTILES, Statistics};
+use crate::brdf::polarised;
 use crate::config::Water;
 use crate::config::parameters::DRAWN;
 use crate::error::Error;
@@ -118,6 +119,17 @@ impl Exact {
     pub fn means(&self, engagement: &Engagement) -> Vec<Means> {
         let source = self.source(engagement);
         self.each(engagement, |o| self.mean(&source, o))
+    }
+
+    /// The mean of the Stokes vector that every observer of an engagement sees of its beam, 1/sr.
+    pub fn stokes(&self, engagement: &Engagement) -> Vec<[f64; 4]> {
+        let (lobe, source) = (&self.water.lobe, self.source(engagement));
+        self.each(engagement, |o| {
+            let means = self.mean(&source, o);
+            let foam = (lobe.whitecap_brdf * means.whitecaps).min(means.f);
+            let (i, parts) = (source.direction.into(), [means.f - foam, foam]);
+            polarised::seen(&lobe.facets.reflectance, i, o.into(), parts, engagement.stokes())
+        })
     }
 
     /// Everything for every observer of an engagement, with the error of the method.

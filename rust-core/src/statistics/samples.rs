@@ -5,7 +5,7 @@ use super::ensemble::{Ensemble, Hit, Observation, Proposal, Worker};
 use super::level_water::BaselineLobe;
 use super::slope_draws::{FEWEST_COMPONENTS, SlopeDraws};
 use super::summary::{Bounds, Draw, Statistics};
-use crate::brdf::Lobe;
+use crate::brdf::{Lobe, polarised};
 use crate::error::{Error, refuse};
 use crate::surface::normal;
 use glam::{DVec2, DVec3};
@@ -337,6 +337,28 @@ impl Samples {
             whitecap: share(&|s| s.hit.whitecap),
             ..Statistics::of(draws, limits, bounds)
         })
+    }
+
+    /// The mean of the Stokes vector that an observer of one of the engagements sees of its beam, 1/sr; each instance in the
+    /// plane of the vertical and the observer's direction from its hit. `position` in m is the observer's; refused where there is
+    /// no such engagement or observer.
+    pub fn stokes(
+        &self,
+        engagement: usize,
+        observer: usize,
+        beam: &Engagement,
+        position: [f64; 3],
+    ) -> Result<[f64; 4], Error> {
+        let (reflectance, foam) = (&self.lobe.facets.reflectance, self.lobe.whitecap_brdf);
+        let i = (-DVec3::from(beam.direction())).into();
+        let mut sums = [0.0; 4];
+        for s in self.of(engagement, observer)?.filter(|s| s.seen.f > 0.0) {
+            let o = (DVec3::from(position) - DVec3::from(s.hit.position)).normalize().into();
+            let foam = (s.hit.whitecap * foam).min(s.seen.f);
+            let seen = polarised::seen(reflectance, i, o, [s.seen.f - foam, foam], beam.stokes());
+            sums.iter_mut().zip(seen).for_each(|(sum, x)| *sum += s.weight * x);
+        }
+        Ok(sums.map(|sum| sum / self.count as f64))
     }
 }
 
