@@ -121,7 +121,7 @@ impl Options {
     }
 
     fn set(&mut self, name: &str, value: Value) -> Result<(), Refused> {
-        for parameter in [PIXEL_ANGLE, CHLOROPHYLL].into_iter().filter(|own| *own == name) {
+        if let Some(parameter) = [PIXEL_ANGLE, CHLOROPHYLL].into_iter().find(|own| *own == name) {
             let Value::Number(number) = value else {
                 let (value, expected) = (value.to_string(), "a number");
                 return Err(Error::WrongType { parameter, value, expected }.into());

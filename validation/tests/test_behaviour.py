@@ -14,13 +14,10 @@ from validation.support.plugin_calls import BOTH, CPU_VARIANTS, I, O, by_angle, 
 
 @pytest.mark.parametrize("variant", CPU_VARIANTS)
 def test_every_variant(use, variant):
-    """Every CPU variant of the wheel loads the plugin and gives the same value; polarised ones depolarise."""
+    """Every CPU variant of the wheel loads the plugin and gives the same value, at one wavelength."""
     mi = use(variant)
-    bsdf = mi.load_dict({"type": "prob_water", "wind_speed": 7})
+    bsdf = mi.load_dict({"type": "prob_water", "wind_speed": 7, "wavelength": 0.55})
     assert abs(value(mi, bsdf) / (Core(wind_speed=7).f(I, O)[0] * O[2]) - 1) < 1e-5
-    if mi.is_polarized:
-        mueller = np.array(bsdf.eval(mi.BSDFContext(), interaction(mi), mi.Vector3f(O.tolist()))).reshape(16, -1)
-        assert mueller[0, 0] > 0 and np.all(mueller[1:] == 0)
 
 
 def test_variants_are_all_tested_or_need_a_gpu():

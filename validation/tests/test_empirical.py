@@ -6,7 +6,7 @@ import pytest
 
 from validation.support.core import Core, direction
 from validation.support.paths import ROOT
-from validation.support.plugin_calls import (BOTH, CPU_VARIANTS, I, O, adapter, by_angle, draw, evaluate, interaction,
+from validation.support.plugin_calls import (BOTH, CPU_VARIANTS, I, O, adapter, by_angle, draw, evaluate,
                                              number, operations, value)
 
 STANDARD = ROOT / "rust-core/data/table.npz"
@@ -65,14 +65,11 @@ def test_follows_the_core(use, variant, sea):
 
 @pytest.mark.parametrize("variant", CPU_VARIANTS)
 def test_every_variant(use, variant):
-    """Every CPU variant gives the core's value; polarised ones depolarise."""
+    """Every CPU variant gives the core's value, at one wavelength."""
     mi = use(variant)
     wanted = Core(surface="empirical", wind_speed=7).f(O, I)[0] * O[2]
-    bsdf = mi.load_dict({**EMPIRICAL, "wind_speed": 7})
+    bsdf = mi.load_dict({**EMPIRICAL, "wind_speed": 7, "wavelength": 0.55})
     assert abs(value(mi, bsdf) / wanted - 1) < 1e-4
-    if mi.is_polarized:
-        mueller = np.array(bsdf.eval(mi.BSDFContext(), interaction(mi), mi.Vector3f(O.tolist()))).reshape(16, -1)
-        assert mueller[0, 0] > 0 and np.all(mueller[1:] == 0)
 
 
 @pytest.mark.parametrize("sea", SEAS[2:8:3], ids=SEA_NAMES[2:8:3])

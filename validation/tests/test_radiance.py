@@ -36,7 +36,7 @@ def radiance(mi, scene, o, samples=1):
                 ray.wavelengths = [450.0, 550.0, 600.0, 700.0]
             rows.append(np.array(integrator.sample(scene, sampler, ray)[0]).ravel())
         value = np.array(rows).T
-    # Water is grey: every channel or wavelength carries the same value.
+    # Water is grey at one wavelength: every channel or lane carries the same value.
     assert np.allclose(value, value[0], rtol=1e-5, atol=0)
     return value[0].reshape(len(o), samples)
 
@@ -46,7 +46,7 @@ def test_directional_emitter(use, variant):
     """L = f E cos(theta_i) within 1e-4, for 240 geometries from overhead to 88 degrees and three winds."""
     mi, rng, errors = use(variant), np.random.default_rng(11), []
     for wind in WINDS:
-        parameters = {"friction_velocity": wind, "wind_direction": 50.0}
+        parameters = {"friction_velocity": wind, "wind_direction": 50.0, "wavelength": 0.55}
         core, gaussian = Core(**parameters), Core(**parameters, gram_charlier=False)
         sources, _ = pairs(core, 8, rng, 50.0)
         sources[0] = [0, 0, 1]
@@ -70,7 +70,7 @@ def test_directional_emitter(use, variant):
 def test_through_sensors_and_film(use, variant):
     """The same through a distant and a perspective sensor and a film."""
     mi = use(variant)
-    parameters = {"friction_velocity": 8.0, "wind_direction": 20.0}
+    parameters = {"friction_velocity": 8.0, "wind_direction": 20.0, "wavelength": 0.55}
     i, o = direction(35.0, 200.0), direction(40.0, 15.0)
     expected = float(Core(**parameters).f(i, o)[0]) * IRRADIANCE * i[2]
     film = {
@@ -110,7 +110,7 @@ def test_through_sensors_and_film(use, variant):
 def test_uniform_sky(use, variant, wind):
     """Under a uniform sky the Monte Carlo mean is the quadrature of f cos, within 4 standard errors."""
     mi = use(variant)
-    parameters = {"friction_velocity": wind, "wind_direction": 0.0}
+    parameters = {"friction_velocity": wind, "wind_direction": 0.0, "wavelength": 0.55}
     core = Core(**parameters)
     sky = {"type": "constant", "radiance": {"type": "uniform", "value": 1.0}}
     view = np.array([direction(t, p) for t, p in ((0, 0), (45, 30), (75, 90), (86, 180))])

@@ -125,6 +125,13 @@ int main(void) {
     check(f[0] > 0.05 && f[0] < 1 && f[1] > f[0] && f[2] == 0, "values");
     check(prob_water_eval(sea, 3, to_source, to_observer, normals, g) == PROB_WATER_STATUS_OK, "eval with normals");
     check(memcmp(f, g, sizeof f) == 0, "a flat sea's normals are up");
+    {
+        double matrices[48];
+        check(prob_water_mueller(sea, 3, to_source, to_observer, NULL, matrices) == PROB_WATER_STATUS_OK, "matrices");
+        check(matrices[0] == f[0] && matrices[16] == f[1] && matrices[32] == 0, "the first element is f");
+        check(matrices[17] < 0 && matrices[17] == matrices[20] && matrices[18] == 0, "parallel light is reflected least");
+        check(prob_water_mueller(sea, 3, to_source, to_observer, NULL, NULL) == PROB_WATER_STATUS_ARGUMENT, "no place for them");
+    }
     check(prob_water_eval_f32(sea, 1, source32, source32, NULL, &f32) == PROB_WATER_STATUS_OK, "float32");
     check(fabs(f32 / f[0] - 1) < 1e-5, "float32 agrees");
     {
