@@ -65,7 +65,7 @@ fn observers_of_a_polarised_laser() {
         assert_eq!(column(&text, "mean"), column(&plain, "mean"));
         assert!(!plain.contains("polarisation"));
     }
-    let text = Scenario::new(LASER).run("--surface empirical --whitecap-onset ramp");
+    let text = Scenario::new(LASER).run("--surface empirical");
     assert!(floats(&text, "degree_of_polarisation")[0] > 0.99);
     // Of light along the plane next to nothing is left there, whitecaps aside; across it all keeps its plane.
     for (stokes, least) in [("[1, -1, 0, 0]", 0.99), ("[1, 0, 0, 0]", 0.99)] {
