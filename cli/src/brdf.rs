@@ -66,36 +66,32 @@ pub fn run(matches: &ArgMatches) -> Outcome {
     // What whitecaps reflect of it, where matrices are asked for.
     let matrices = matches.get_flag("mueller");
     let mut foam = vec![0.0; if matrices { f.len() } else { 0 }];
-    const FOAM: Parts = Parts { facets: false, whitecaps: true };
     match surface {
         Surface::Flat => {
             let lobe = water.lobe()?;
             rows.eval(&lobe, &mut f)?;
             if matrices {
-                rows.each(&mut foam, |_, i, o, n| lobe.eval_parts(i, o, n, FOAM))?;
+                rows.each(&mut foam, |_, i, o, n| lobe.eval_parts(i, o, n, Parts::WHITECAPS))?;
             }
         }
         Surface::Instance => {
             let lobe = InstanceLobe::new(&water)?;
-            rows.each(&mut f, |row, i, o, _| {
+            let f_of = |row: usize, i, o: [f64; 3], parts| {
                 let [x, y, _] = directions.vectors[2][row];
                 // The lobe's value has the cosine that whoever integrates f adds.
-                let seen = lobe.eval(i, o, [x, y]);
+                let seen = lobe.eval_parts(i, o, [x, y], parts);
                 if o[2] > 0.0 { seen / o[2] } else { seen }
-            })?;
+            };
+            rows.each(&mut f, |row, i, o, _| f_of(row, i, o, Parts::ALL))?;
             if matrices {
-                rows.each(&mut foam, |row, i, o, _| {
-                    let [x, y, _] = directions.vectors[2][row];
-                    let seen = lobe.eval_parts(i, o, [x, y], FOAM);
-                    if o[2] > 0.0 { seen / o[2] } else { seen }
-                })?;
+                rows.each(&mut foam, |row, i, o, _| f_of(row, i, o, Parts::WHITECAPS))?;
             }
         }
         Surface::Ensemble => {
             let lobe = EnsembleLobe::new(&water)?;
             rows.each(&mut f, |_, i, o, _| lobe.eval(i, o))?;
             if matrices {
-                rows.each(&mut foam, |_, i, o, _| lobe.eval_parts(i, o, FOAM))?;
+                rows.each(&mut foam, |_, i, o, _| lobe.eval_parts(i, o, Parts::WHITECAPS))?;
             }
         }
         Surface::Empirical => {
@@ -104,7 +100,7 @@ pub fn run(matches: &ArgMatches) -> Outcome {
             estimates = source.par_iter().zip(observer).map(|(i, o)| lobe.estimate(*i, *o)).collect();
             f = estimates.iter().map(|estimate| estimate.mean).collect();
             if matrices {
-                rows.each(&mut foam, |_, i, o, _| lobe.eval_parts(i, o, FOAM))?;
+                rows.each(&mut foam, |_, i, o, _| lobe.eval_parts(i, o, Parts::WHITECAPS))?;
             }
         }
     }

@@ -85,9 +85,6 @@ pub struct Apart(Sample<f32>, f32);
 /// Lanes of a spectrum, at most.
 const LANES: usize = 4;
 
-const FACETS: Parts = Parts { facets: true, whitecaps: false };
-const WHITECAPS: Parts = Parts { facets: false, whitecaps: true };
-
 impl Local<'_> {
     fn eval(&self, i: [f32; 3], o: [f32; 3], parts: Parts, to_light: bool) -> f32 {
         match &self.own {
@@ -98,7 +95,7 @@ impl Local<'_> {
 
     /// The value of whitecaps, as far as they take part.
     fn whitecaps(&self, i: [f32; 3], o: [f32; 3], parts: Parts, to_light: bool) -> f32 {
-        if parts.whitecaps { self.eval(i, o, WHITECAPS, to_light) } else { 0.0 }
+        if parts.whitecaps { self.eval(i, o, Parts::WHITECAPS, to_light) } else { 0.0 }
     }
 
     fn sample(&self, i: [f32; 3], u: [f32; 3], parts: Parts, to_light: bool) -> Sample<f32> {
@@ -147,7 +144,7 @@ pub extern "C" fn prob_water_place_eval(
     if !apart {
         return Pair(local.eval(*i, *o, parts, to_light), 0.0);
     }
-    let facets = if parts.facets { local.eval(*i, *o, FACETS, to_light) } else { 0.0 };
+    let facets = if parts.facets { local.eval(*i, *o, Parts::FACETS, to_light) } else { 0.0 };
     Pair(facets, local.whitecaps(*i, *o, parts, to_light))
 }
 
@@ -190,9 +187,14 @@ pub extern "C" fn prob_water_place_water_leaving(
     o: &[f32; 3],
     index: f32,
 ) -> Pair {
-    let mut lobe = *local.lobe();
-    lobe.facets.reflectance = local.reflectance(index);
-    let [value, density] = lobe.water_leaving(*i, *o);
+    let [value, density] = match &local.water.single_dispersion {
+        Some(dispersion) => {
+            let mut lobe = *local.lobe();
+            lobe.facets.reflectance = dispersion.reflectance(index);
+            lobe.water_leaving(*i, *o)
+        }
+        None => local.lobe().water_leaving(*i, *o),
+    };
     Pair(value, density)
 }
 

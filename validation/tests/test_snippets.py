@@ -3,7 +3,6 @@
 Those of the command's guide are compared with what it prints in cli/tests/command/guide.rs.
 """
 
-import json
 import os
 import re
 import shlex
@@ -14,6 +13,7 @@ import textwrap
 import pytest
 
 from validation.support.command import COMMAND
+from validation.support.core import LIBRARY
 from validation.support.paths import PLUGIN_ROOT, ROOT
 
 RST = ROOT / "mitsuba-plugin/docs/prob_water.rst"
@@ -99,15 +99,6 @@ def test_commands_of_the_readme():
             assert run([COMMAND, *words[6:]]).startswith("time,observer,mean")
 
 
-def library(ending):
-    """What a Rust or a C program links, as `cargo xtask test` has compiled it."""
-    cargo = os.environ.get("CARGO", "cargo")
-    messages = run([cargo, "build", "--release", "--workspace", "--exclude", "xtask", "--lib", "--bins", "--tests", "--examples",
-                    "--target-dir", "target", "--quiet", "--message-format=json"]).splitlines()
-    artifacts = [m for m in map(json.loads, messages) if m["reason"] == "compiler-artifact" and m["target"]["name"] == "prob_water"]
-    return next(file for made in artifacts for file in made["filenames"] if file.endswith(ending))
-
-
 def test_rust(tmp_path):
     """Every section of the guide, after what its first one configures."""
     sections = (ROOT / "docs/guide-rust.md").read_text().split("\n## ")[1:]
@@ -121,14 +112,14 @@ def test_rust(tmp_path):
     source = tmp_path / "guide.rs"
     source.write_text("#![allow(unused)]\n" + main)
     program = tmp_path / "guide"
-    run(["rustc", "--edition", "2024", source, "-o", program, "--extern", f"prob_water={library('.rlib')}",
+    run(["rustc", "--edition", "2024", source, "-o", program, "--extern", f"prob_water={LIBRARY.with_suffix('.rlib')}",
          "-L", f"dependency={ROOT / 'target/release/deps'}"])
     assert "+-" in run([program])
 
 
 def test_c(tmp_path):
     """The guide's program prints the numbers it promises; its fragments compile and run within it."""
-    archive = library(".a")
+    archive = LIBRARY.with_suffix(".a")
     program, *fragments = blocks("docs/guide-c.md", "c")
     extra = """
     double sx[1] = {0}, sy[1] = {0}, sz[1] = {1}, ox[1] = {0}, oy[1] = {0}, oz[1] = {1};

@@ -44,6 +44,7 @@ pub fn test() -> Result<()> {
     let start = Instant::now();
     let mut rows: Vec<(&str, String, Duration)> = Vec::new();
     let mut failure = None;
+    *CLIPPY.lock().expect("no step panics") = start_clippy()?;
     for (number, step) in STEPS.iter().enumerate() {
         println!("\n== {}/{} {}", number + 1, STEPS.len(), step.name);
         let step_start = Instant::now();
@@ -86,9 +87,8 @@ static CLIPPY: Mutex<Option<Child>> = Mutex::new(None);
 const CLIPPY_LOG: &str = "target/clippy.log";
 
 /// Whatever later steps run, once and together: the library, its tests, the command, the campaigns, the plugin's part of Rust.
-/// Meanwhile the Python packages that later steps need are fetched, and clippy runs.
+/// Meanwhile the Python packages that later steps need are fetched.
 fn compile() -> Result<Outcome> {
-    *CLIPPY.lock().expect("no step panics") = start_clippy()?;
     std::thread::scope(|scope| {
         let setup = scope.spawn(setup::setup);
         util::run(util::cargo().arg("build").args(cargo::everything()), "cargo build")?;

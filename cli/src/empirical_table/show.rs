@@ -130,7 +130,7 @@ fn slice(matches: &ArgMatches, table: &Table, water: &Water, incidence: f64) -> 
         let to = if across { Planes::across } else { Planes::in_plane };
         let (i, o) = (planes.source(), to(&planes, angle.to_radians()));
         let estimate = lobe.estimate(i, o);
-        let whitecaps = Parts { facets: false, whitecaps: true };
+        let whitecaps = Parts::WHITECAPS;
         let whitecap = lobe.eval_parts(i, o, whitecaps) / lobe.sampler.whitecap_brdf;
         let numbers = [angle, estimate.mean, estimate.std, whitecap].map(Cell::Number);
         out.row(&[&numbers[..], &[Cell::Count(estimate.outside.into())]].concat())?;

@@ -421,10 +421,9 @@ pub unsafe extern "C" fn prob_water_mueller(
         // SAFETY: by this function's contract.
         let n = if normals.is_null() { None } else { Some(unsafe { triples(normals, rows, "normals")? }) };
         for (k, (f, out)) in f.iter().zip(out.chunks_exact_mut(16)).enumerate() {
-            let parts = Parts { facets: false, whitecaps: true };
             let foam = match &sea.empirical {
-                Some(table) => table.eval_parts(i[k], o[k], parts),
-                None => sea.lobe.eval_parts(i[k], o[k], n.map(|n| n[k]), parts),
+                Some(table) => table.eval_parts(i[k], o[k], Parts::WHITECAPS),
+                None => sea.lobe.eval_parts(i[k], o[k], n.map(|n| n[k]), Parts::WHITECAPS),
             };
             let matrix = mueller(&sea.lobe.facets.reflectance, i[k], o[k], [f - foam, foam]);
             out.copy_from_slice(matrix.as_flattened());

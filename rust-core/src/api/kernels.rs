@@ -73,11 +73,7 @@ impl Kernel {
     }
 }
 
-const PARTS: [Parts; 3] = [
-    Parts { facets: true, whitecaps: false },
-    Parts { facets: false, whitecaps: true },
-    Parts { facets: true, whitecaps: true },
-];
+const PARTS: [Parts; 3] = [Parts::FACETS, Parts::WHITECAPS, Parts::ALL];
 
 /// What the inputs of a program are, by their numbers.
 pub mod inputs {

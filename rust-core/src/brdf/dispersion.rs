@@ -6,8 +6,8 @@
 //! calm seas near the horizon, is off by what dispersion makes of rho there.
 
 use super::fresnel::Reflectance;
+use super::lobe::cos_zeta;
 use crate::numeric::packets::{Packets, Tabulated};
-use crate::numeric::real::dot;
 use crate::numeric::{Real, Scalar, Vec3};
 
 /// First wavelength of the table, its step and their number, nm: of light that is seen.
@@ -72,7 +72,7 @@ impl<T: Tabulated> Dispersion<T> {
     #[inline(always)]
     pub fn ratios<const N: usize>(&self, n: [T; N], i: Vec3<T>, o: Vec3<T>) -> [T; N] {
         let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
-        let cos = T::min(T::of(0.5) * dot(h, h).sqrt(), T::of(1.0)).to_density();
+        let cos = cos_zeta(h).to_density();
         let over = T::Density::max(self.base.eval(cos), T::Density::TINY).recip();
         n.map(|n| T::from_density(self.reflectance(n).eval(cos) * over))
     }

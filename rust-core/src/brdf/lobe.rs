@@ -34,6 +34,12 @@ pub(crate) fn defined<T: Real>(i: Vec3<T>, o: Vec3<T>, [ci, cr]: [T; 2], f: T) -
     T::of(0.0).mul_add((i[0] + o[0]) + (i[1] + o[1]) + (ci + cr), f)
 }
 
+/// cos zeta (Eq. 61), at most 1, of the sum of two unit vectors.
+#[inline(always)]
+pub(crate) fn cos_zeta<T: Real>(sum: Vec3<T>) -> T {
+    T::min(T::of(0.5) * dot(sum, sum).sqrt(), T::of(1.0))
+}
+
 /// `sin theta` of `cos theta`.
 #[inline(always)]
 pub(crate) fn sine<T: Real>(cos: T) -> T {
@@ -441,6 +447,10 @@ pub struct Parts {
 impl Parts {
     /// The whole BRDF.
     pub const ALL: Self = Self { facets: true, whitecaps: true };
+    /// Smooth water alone.
+    pub const FACETS: Self = Self { facets: true, whitecaps: false };
+    /// Whitecaps alone.
+    pub const WHITECAPS: Self = Self { facets: false, whitecaps: true };
 }
 
 /// The BRDF of a point of the sea: `(1 - F_WC) f_SW + F_WC f_WC`, finite and non-negative.

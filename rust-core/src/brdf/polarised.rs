@@ -8,6 +8,7 @@
 //! counter-clockwise from there, and the second axis is the direction of travel times the first one.
 
 use super::fresnel::Reflectance;
+use super::lobe::cos_zeta;
 use crate::numeric::real::dot;
 use crate::numeric::{Real, Vec3};
 
@@ -49,7 +50,7 @@ impl<T: Real> Reflectance<T> {
     #[inline(always)]
     pub fn polarised_between(&self, i: Vec3<T>, o: Vec3<T>) -> [T; 3] {
         let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
-        self.polarised(T::min(T::of(0.5) * dot(h, h).sqrt(), T::of(1.0)))
+        self.polarised(cos_zeta(h))
     }
 }
 
@@ -84,15 +85,16 @@ pub fn reflected(mueller: &Mueller, stokes: [f64; 4]) -> [f64; 4] {
     mueller.map(|row| (0..4).map(|k| row[k] * stokes[k]).sum())
 }
 
-/// What is seen of a Stokes vector that facets and whitecaps reflect, as [`mueller`], 1/sr.
+/// What is seen of a Stokes vector, 1/sr, where f of the whole is the first number, and of whitecaps alone the second.
 pub fn seen(
     reflectance: &Reflectance<f64>,
     i: Vec3<f64>,
     o: Vec3<f64>,
-    parts: [f64; 2],
+    [f, foam]: [f64; 2],
     stokes: [f64; 4],
 ) -> [f64; 4] {
-    reflected(&mueller(reflectance, i, o, parts), stokes)
+    let foam = foam.min(f);
+    reflected(&mueller(reflectance, i, o, [f - foam, foam]), stokes)
 }
 
 /// Degree of polarisation of a Stokes vector, from 0 to 1, and its angle: of the plane of linear polarisation to the first axis,

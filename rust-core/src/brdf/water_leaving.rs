@@ -79,11 +79,7 @@ mod tests {
         assert_eq!([value, density], [0.0, 0.0]);
         assert_eq!(lobe.water_leaving([0.6, 0.0, -0.8], i), [0.0, 0.0]);
         let share = |parts| lobe.water_leaving_share(i, 0.5, parts);
-        let (facets, whitecaps, both) = (
-            share(Parts { facets: true, whitecaps: false }),
-            share(Parts { facets: false, whitecaps: true }),
-            share(Parts::ALL),
-        );
+        let (facets, whitecaps, both) = (share(Parts::FACETS), share(Parts::WHITECAPS), share(Parts::ALL));
         // 1/share is 1 and what the others reflect over what the water body does.
         assert!((1.0 / facets + 1.0 / whitecaps - 1.0 - 1.0 / both).abs() < 1e-12);
         assert_eq!(lobe.water_leaving_share(i, 0.0, Parts::ALL), 0.0);

@@ -1,11 +1,10 @@
 //! The empirical model at one wind and one footprint, laid out so finely that straight lines do between nodes: what renderers
 //! evaluate, in any number type.
 
-use crate::brdf::lobe::{defined, sine};
+use crate::brdf::lobe::{cos_zeta, defined, sine};
 use crate::brdf::{Lobe, Parts};
 use crate::config::OffPlaneModel;
 use crate::numeric::packets::{Packets, Tabulated};
-use crate::numeric::real::dot;
 use crate::numeric::{Real, Scalar, Vec3};
 use crate::readings::Readings;
 use crate::statistics::level_water::{MIN_COS, NOTHING};
@@ -220,7 +219,7 @@ impl<T: Tabulated> FineGrid<T> {
     #[inline(always)]
     pub(crate) fn reflectance(&self, i: Vec3<T>, o: Vec3<T>) -> T {
         let h = [i[0] + o[0], i[1] + o[1], i[2] + o[2]];
-        let cos = T::min(T::of(0.5) * dot(h, h).sqrt(), T::of(1.0));
+        let cos = cos_zeta(h);
         T::from_density(self.lobe.facets.reflectance.eval(cos.to_density()))
     }
 

@@ -178,9 +178,8 @@ impl EmpiricalLobe {
 
     /// The Stokes vector that is seen of another one, 1/sr, with f of [`EmpiricalLobe::estimate`].
     pub fn stokes(&self, i: [f64; 3], o: [f64; 3], stokes: [f64; 4]) -> [f64; 4] {
-        let f = self.estimate(i, o).mean;
-        let foam = self.eval_parts(i, o, Parts { facets: false, whitecaps: true }).min(f);
-        polarised::seen(&self.sampler.facets.reflectance, i, o, [f - foam, foam], stokes)
+        let parts = [self.estimate(i, o).mean, self.eval_parts(i, o, Parts::WHITECAPS)];
+        polarised::seen(&self.sampler.facets.reflectance, i, o, parts, stokes)
     }
 
     /// f with its standard uncertainty (Eqs. 90-91), for unit vectors to source and observer.

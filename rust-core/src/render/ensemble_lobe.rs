@@ -15,13 +15,12 @@
 //! With [`Average::Report`] f is the report's mean instead, without `(N.o)/o_z`. Then waves count most just before they
 //! turn from the observer: the mean is Gauss and Legendre's over seven slopes up to there, in the observer's plane.
 
-use crate::brdf::lobe::{alpha, defined};
+use crate::brdf::lobe::{alpha, cos_zeta, defined};
 use crate::brdf::shadowing::cos_lambda;
 use crate::brdf::{Lobe, Parts};
 use crate::config::{Average, Surface, Water};
 use crate::error::Error;
 use crate::numeric::packets::{Packets, Tabulated};
-use crate::numeric::real::dot;
 use crate::numeric::{Real, Scalar, Vec3};
 use crate::statistics::characteristic::Component;
 use crate::statistics::facet_density::{Cell, FacetDensity};
@@ -227,7 +226,7 @@ impl<T: Tabulated> MeanLobe<T> {
         let [d_u, d_c] = across.map(|x| x * inverse);
         let variance = T::max((d_u * d_u).mul_add(variance_u, d_c * d_c * variance_c), T::of(0.0));
         let sigma = variance.sqrt();
-        let cos_zeta = T::min(T::of(0.5) * dot(h, h).sqrt(), T::of(1.0));
+        let cos_zeta = cos_zeta(h);
         let rho = T::from_density(self.lobe.facets.reflectance.eval(cos_zeta.to_density()));
         let slope = |step: T| [d_u.mul_add(step, mean_u), d_c.mul_add(step, mean_c)];
         let mut visible = T::of(0.0);

@@ -126,9 +126,8 @@ impl Exact {
         let (lobe, source) = (&self.water.lobe, self.source(engagement));
         self.each(engagement, |o| {
             let means = self.mean(&source, o);
-            let foam = (lobe.whitecap_brdf * means.whitecaps).min(means.f);
-            let (i, parts) = (source.direction.into(), [means.f - foam, foam]);
-            polarised::seen(&lobe.facets.reflectance, i, o.into(), parts, engagement.stokes())
+            let (i, foam) = (source.direction.into(), lobe.whitecap_brdf * means.whitecaps);
+            polarised::seen(&lobe.facets.reflectance, i, o.into(), [means.f, foam], engagement.stokes())
         })
     }
 

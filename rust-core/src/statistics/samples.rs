@@ -354,8 +354,7 @@ impl Samples {
         let mut sums = [0.0; 4];
         for s in self.of(engagement, observer)?.filter(|s| s.seen.f > 0.0) {
             let o = (DVec3::from(position) - DVec3::from(s.hit.position)).normalize().into();
-            let foam = (s.hit.whitecap * foam).min(s.seen.f);
-            let seen = polarised::seen(reflectance, i, o, [s.seen.f - foam, foam], beam.stokes());
+            let seen = polarised::seen(reflectance, i, o, [s.seen.f, s.hit.whitecap * foam], beam.stokes());
             sums.iter_mut().zip(seen).for_each(|(sum, x)| *sum += s.weight * x);
         }
         Ok(sums.map(|sum| sum / self.count as f64))

@@ -134,7 +134,7 @@ fn whitecaps_cover_the_fraction_at_every_footprint() {
     for (w, footprint) in [(12.0, 0.02), (24.0, 0.3), (40.0, 0.05), (56.0, 0.15), (62.9, 1.0)] {
         let water = with(&sea(w, 20.0, 100), |p| p.footprint = Some(footprint));
         let lobe = EmpiricalLobe::new(&water, Table::standard()).unwrap();
-        let whitecaps = Parts { facets: false, whitecaps: true };
+        let whitecaps = Parts::WHITECAPS;
         let f = lobe.eval_parts([0.0, 0.0, 1.0], [0.28, 0.0, 0.96], whitecaps);
         let share = f / water.local_lobe().whitecap_brdf;
         assert!((share / water.whitecap_fraction - 1.0).abs() < 0.01, "{w} {footprint}: {share}");

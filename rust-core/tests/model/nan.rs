@@ -12,8 +12,7 @@ const UP: Vec3<f64> = [0.0, 0.0, 1.0];
 const SOURCE: Vec3<f64> = [0.6, 0.0, 0.8];
 /// Towards the mirror, elsewhere, level with the horizon and below it.
 const OBSERVERS: [Vec3<f64>; 4] = [[-0.6, 0.0, 0.8], [0.0, 0.6, 0.8], [1.0, 0.0, 0.0], [0.6, 0.0, -0.8]];
-const PARTS: [Parts; 3] =
-    [Parts::ALL, Parts { facets: true, whitecaps: false }, Parts { facets: false, whitecaps: true }];
+const PARTS: [Parts; 3] = [Parts::ALL, Parts::FACETS, Parts::WHITECAPS];
 
 /// A vector with one or all of its coordinates not a number.
 fn broken(v: Vec3<f64>) -> [Vec3<f64>; 4] {

@@ -58,7 +58,7 @@ fn from_above(sea: &Water) -> [f64; 2] {
     (parameters.surface, parameters.average) = (Surface::Ensemble, Average::Report);
     let afar = EnsembleLobe::new(&parameters.configure().unwrap()).unwrap();
     let up = [0.0, 0.0, 1.0];
-    let whitecaps = Parts { facets: false, whitecaps: true };
+    let whitecaps = Parts::WHITECAPS;
     let afar = afar.eval_parts(up, up, whitecaps) / sea.local_lobe().whitecap_brdf;
     [exact, afar].map(|share| share / sea.whitecap_fraction)
 }
@@ -160,7 +160,7 @@ fn whitecaps_alone_do_not_follow_the_footprint() {
         let lobe = EnsembleLobe::new(&parameters.configure().unwrap()).unwrap();
         let (sin, cos) = 75.0f64.to_radians().sin_cos();
         let f = |parts| lobe.eval_parts([0.0, 0.0, 1.0], [sin, 0.0, cos], parts);
-        let [all, whitecaps] = [Parts::ALL, Parts { facets: false, whitecaps: true }].map(f);
+        let [all, whitecaps] = [Parts::ALL, Parts::WHITECAPS].map(f);
         println!("D {footprint}: f {all:.3e}, of whitecaps {whitecaps:.3e}");
         found.push(whitecaps);
     }
